@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use configs::printable;
-use diagnosis::bench::Bench;
 use diagnosis::diagnose::diagnose;
-use diagnosis::next::{Sequel, sequel};
+use diagnosis::fit_problem::FitProblem;
+use diagnosis::next::{FollowUp, follow_up};
 use diagnosis::observed::Observed;
 use measurements::{MeasurementSet, Run};
 use reports::tables;
@@ -35,14 +35,15 @@ pub(crate) fn held_against(
     measured: &Measured,
     model: &Candidate,
     flags: &Flags,
-) -> Result<Option<Sequel>, CommandError> {
+) -> Result<Option<FollowUp>, CommandError> {
     let (earlier, later) = parted(path, &measured.set)?;
     let (observed, new) = (Observed::of(&earlier), Observed::of(&later));
     let forward = model.forward_of(&earlier, &observed)?;
     let before = model.forward_of(&later, &new)?;
-    let bench = Bench { set: &earlier, observed: &observed, forward: &forward };
-    let diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
-    sequel(&bench, &diagnosis, (&new, &before)).map_err(|error| failed(error.into(), &model.name))
+    let problem = FitProblem { set: &earlier, observed: &observed, forward: &forward };
+    let diagnosis = diagnose(&problem, flags.seed).map_err(|error| failed(error, &model.name))?;
+    follow_up(&problem, &diagnosis, (&new, &before))
+        .map_err(|error| failed(error.into(), &model.name))
 }
 
 /// The set with the runs that the diagnosis in `path` rests on, and with all others.
@@ -96,17 +97,17 @@ fn parted(
 }
 
 /// `sequel`, which the JSON `object` of its diagnosis holds, as `plunge diagnose` prints it.
-pub(crate) fn as_text(sequel: &Sequel, object: &Value) -> String {
+pub(crate) fn as_text(follow_up: &FollowUp, object: &Value) -> String {
     let after = &object["after"];
-    let told = match sequel.hypotheses.len() {
+    let told = match follow_up.hypotheses.len() {
         1 => String::new(),
-        _ if sequel.is_unexpected => String::new(),
-        _ => format!("They tell {:.2} bit of which it is.\n", sequel.told_bits),
+        _ if follow_up.is_unexpected => String::new(),
+        _ => format!("They tell {:.2} bit of which it is.\n", follow_up.told_bits),
     };
-    let unexpected = match sequel.is_unexpected {
+    let unexpected = match follow_up.is_unexpected {
         true => format!(
             "No hypothesis expected this: even the nearest misses by more than chance does (p {:.1e}).\n",
-            sequel.p_nearest
+            follow_up.p_nearest
         ),
         false => String::new(),
     };

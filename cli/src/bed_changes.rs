@@ -1,15 +1,15 @@
 //! Changes of a bed that its diagnosis tries, as `plunge effects` shows them.
 
-use diagnosis::beds::{SWITCHES, Switch};
+use diagnosis::beds::{BED_CANDIDATES, BedCandidate};
 use resistive::Kind;
 use serde_json::{Value, json};
 
 /// Every one that is not an effect of a registry.
-pub(crate) fn all() -> impl Iterator<Item = &'static Switch> {
-    SWITCHES.iter().filter(|switch| switch.is_change())
+pub(crate) fn all() -> impl Iterator<Item = &'static BedCandidate> {
+    BED_CANDIDATES.iter().filter(|bed_candidate| bed_candidate.is_change())
 }
 
-pub(crate) fn as_text(change: &Switch) -> String {
+pub(crate) fn as_text(change: &BedCandidate) -> String {
     let (least, most) = change.range;
     format!(
         "{}  a change of the bed, in a medium of the kind \"grains\"\n\n\
@@ -25,7 +25,7 @@ pub(crate) fn as_text(change: &Switch) -> String {
     )
 }
 
-pub(crate) fn as_json(change: &Switch) -> Value {
+pub(crate) fn as_json(change: &BedCandidate) -> Value {
     json!({
         "name": change.id,
         "medium": "grains",

@@ -6,11 +6,11 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use diagnosis::beds::{
-    BedDiagnosis, BedError, BedForward, Plan, Stand, Wish, bed_forward, compare_jobs, diagnose_bed,
-    unaffordable,
+    BedDiagnosis, BedError, BedForward, BedModel, Plan, Wish, bed_forward, compare_jobs,
+    diagnose_bed, unaffordable,
 };
-use diagnosis::bench::Bench;
 use diagnosis::compare::Comparison;
+use diagnosis::fit_problem::FitProblem;
 use engine::units::{self, Dimension};
 use runner::beds::{Impacts, Place};
 use runner::{CampaignError, Elsewhere};
@@ -106,11 +106,11 @@ impl<'a> Workshop<'a> {
     ) -> CommandResult {
         let mut plans = Vec::new();
         for model in models.iter().filter(|model| model.loaded.model.grains().is_some()) {
-            let stand = stand(model, measured)?;
-            let jobs = compare_jobs(&stand, &measured.observed).map_err(|e| self.failed(e))?;
+            let bed_model = bed_model(model, measured)?;
+            let jobs = compare_jobs(&bed_model, &measured.observed).map_err(|e| self.failed(e))?;
             let place = self.place();
             let left = place.outstanding(&jobs).map_err(|e| self.failed(e.into()))?;
-            let rate = place.rate(stand.grains()).map_err(|e| self.failed(e.into()))?;
+            let rate = place.rate(bed_model.grains()).map_err(|e| self.failed(e.into()))?;
             plans.push(json!({
                 "model": model.name,
                 "impacts": jobs.len(),
@@ -128,8 +128,8 @@ impl<'a> Workshop<'a> {
         model: &Candidate,
         measured: &Measured,
     ) -> Result<BedForward, CommandError> {
-        let stand = stand(model, measured)?;
-        let forward = bed_forward(&stand, &measured.observed, &self.place());
+        let bed_model = bed_model(model, measured)?;
+        let forward = bed_forward(&bed_model, &measured.observed, &self.place());
         self.terminal.clear();
         forward.map_err(|error| self.failed(error))
     }
@@ -139,19 +139,22 @@ impl<'a> Workshop<'a> {
             BedError::Campaign(CampaignError::Interrupted) => {
                 self.terminal.interrupted("what has ended is kept; the same command goes on")
             }
-            BedError::Stand(_) | BedError::UnknownCandidate { .. } => {
+            BedError::BedModel(_) | BedError::UnknownCandidate { .. } => {
                 CommandError::bad_input(error)
             }
             BedError::Campaign(CampaignError::Run(error)) => error.into(),
             BedError::Campaign(CampaignError::Scheduler(error)) => of_scheduler(error),
-            BedError::Bench(error) => failed(error, "the bed"),
+            BedError::FitProblem(error) => failed(error, "the bed"),
             other => CommandError::Failed(other.into()),
         }
     }
 }
 
-fn stand<'a>(model: &'a Candidate, measured: &'a Measured) -> Result<Stand<'a>, CommandError> {
-    Stand::new(&model.loaded.model, &measured.set)
+fn bed_model<'a>(
+    model: &'a Candidate,
+    measured: &'a Measured,
+) -> Result<BedModel<'a>, CommandError> {
+    BedModel::new(&model.loaded.model, &measured.set)
         .map_err(|error| CommandError::bad_input(format!("{}: {error}", model.name)))
 }
 
@@ -164,15 +167,16 @@ pub(crate) fn diagnose(
 ) -> CommandResult {
     let model = &models[0];
     let workshop = Workshop::new(beds, flags)?;
-    let stand = stand(model, measured)?;
+    let bed_model = bed_model(model, measured)?;
     let wish =
         Wish { budget: beds.budget, free: beds.free.clone(), candidates: beds.candidates.clone() };
     let place = workshop.place();
-    let plan = Plan::new(&stand, &measured.observed, &place, &wish)
+    let plan = Plan::new(&bed_model, &measured.observed, &place, &wish)
         .map_err(|error| workshop.failed(error))?;
     let shown = plan_as_text(&plan);
     if beds.plan {
-        let object = json!({ "set": measured.set.id, "cost": { "plan": plan.to_json(&stand) } });
+        let object =
+            json!({ "set": measured.set.id, "cost": { "plan": plan.to_json(&bed_model) } });
         return if flags.json {
             output::json_to_stdout(&object)
         } else {
@@ -184,9 +188,9 @@ pub(crate) fn diagnose(
     }
     let results = flags.results_of(measured, "diagnose", models, &format!("{wish:?}"))?;
     if !plan.fits() {
-        return tell_unaffordable((&plan, &stand), (flags, &model.name), &results);
+        return tell_unaffordable((&plan, &bed_model), (flags, &model.name), &results);
     }
-    let found = diagnose_bed(&stand, &measured.observed, &place, plan, flags.seed);
+    let found = diagnose_bed(&bed_model, &measured.observed, &place, plan, flags.seed);
     workshop.terminal.clear();
     let mut found = found.map_err(|error| workshop.failed(error))?;
     if seeks_force {
@@ -195,13 +199,13 @@ pub(crate) fn diagnose(
     }
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
-    let object = found.to_json(&stand).map_err(anyhow::Error::new)?;
+    let object = found.to_json(&bed_model).map_err(anyhow::Error::new)?;
     let json = format!("{object:#}\n");
     let mut files = vec![("diagnosis.json".to_owned(), json.clone())];
-    files.extend(found.proposals(&stand)?);
+    files.extend(found.proposals(&bed_model)?);
     let BedDiagnosis { diagnosis, forward, observed, .. } = &found;
-    let bench = Bench { set: &measured.set, observed, forward };
-    write(&mut files, (&bench, &model.name, diagnosis), flags, &results)?;
+    let problem = FitProblem { set: &measured.set, observed, forward };
+    write(&mut files, (&problem, &model.name, diagnosis), flags, &results)?;
     if flags.json {
         return output::whole_to_stdout(&json);
     }
@@ -217,13 +221,13 @@ pub(crate) fn diagnose(
 
 /// What is said and written of a `plan` that takes more than the budget.
 fn tell_unaffordable(
-    (plan, stand): (&Plan, &Stand<'_>),
+    (plan, bed_model): (&Plan, &BedModel<'_>),
     (flags, name): (&Flags, &str),
     results: &Results,
 ) -> CommandResult {
     let diagnosis = unaffordable(plan);
     let mut object = diagnosis.to_json().map_err(anyhow::Error::new)?;
-    object["cost"] = json!({ "impacts": 0, "plan": plan.to_json(stand) });
+    object["cost"] = json!({ "impacts": 0, "plan": plan.to_json(bed_model) });
     let text = format!("{object:#}\n");
     let mut files = vec![("diagnosis.json".to_owned(), text.clone())];
     files.extend(report::of_results(&files, flags.quiet));

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use configs::edit::add_effects;
-use diagnosis::bench::Bench;
 use diagnosis::calibrate::{Calibration, Size, calibrate};
 use diagnosis::diagnose::{diagnose, seek_missing_force};
+use diagnosis::fit_problem::FitProblem;
 use diagnosis::missing_force::FOUND;
 use diagnosis::next::recommend;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -82,17 +82,19 @@ pub(crate) fn run(args: &Args) -> CommandResult {
 fn diagnose_law(args: &Args, measured: &Measured, models: &[Candidate]) -> CommandResult {
     let (flags, model) = (&args.flags, &models[0]);
     let forward = model.forward(measured, flags)?;
-    let sequel = match &args.after {
+    let follow_up = match &args.after {
         Some(path) => after::held_against(path, measured, model, flags)?,
         None => None,
     };
     let results = flags.results(measured, "diagnose", models)?;
-    let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
-    let mut diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
+    let problem =
+        FitProblem { set: &measured.set, observed: &measured.observed, forward: &forward };
+    let mut diagnosis =
+        diagnose(&problem, flags.seed).map_err(|error| failed(error, &model.name))?;
     if args.missing_force {
-        seek_missing_force(&bench, &mut diagnosis).map_err(|error| failed(error, &model.name))?;
+        seek_missing_force(&problem, &mut diagnosis).map_err(|error| failed(error, &model.name))?;
     }
-    let next = recommend(&bench, &model.loaded.model, &mut diagnosis);
+    let next = recommend(&problem, &model.loaded.model, &mut diagnosis);
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
     let calibration: Option<Calibration> = match args.calibrate {
@@ -101,15 +103,15 @@ fn diagnose_law(args: &Args, measured: &Measured, models: &[Candidate]) -> Comma
             results.written_before(CALIBRATION).and_then(|text| serde_json::from_str(&text).ok())
         }
         true => {
-            let found = calibrate(&bench, &diagnosis, Size::default(), flags.seed);
+            let found = calibrate(&problem, &diagnosis, Size::default(), flags.seed);
             Some(found.map_err(|error| failed(error, &model.name))?)
         }
     };
     if let Some(calibration) = &calibration {
         diagnosis.probability = Some(calibration.probability(&diagnosis));
     }
-    if let Some(sequel) = &sequel {
-        diagnosis.after = Some(serde_json::to_value(sequel).map_err(anyhow::Error::new)?);
+    if let Some(follow_up) = &follow_up {
+        diagnosis.after = Some(serde_json::to_value(follow_up).map_err(anyhow::Error::new)?);
     }
     let object = diagnosis.to_json().map_err(anyhow::Error::new)?;
     let text = format!("{object:#}\n");
@@ -119,7 +121,7 @@ fn diagnose_law(args: &Args, measured: &Measured, models: &[Candidate]) -> Comma
     if let Some(object) = &counted {
         files.push((CALIBRATION.to_owned(), format!("{object:#}\n")));
     }
-    write(&mut files, (&bench, &model.name, &diagnosis), flags, &results)?;
+    write(&mut files, (&problem, &model.name, &diagnosis), flags, &results)?;
     if flags.json {
         return output::to_stdout(&text);
     }
@@ -128,8 +130,8 @@ fn diagnose_law(args: &Args, measured: &Measured, models: &[Candidate]) -> Comma
     if let (Some(calibration), Some(counted)) = (&calibration, &counted) {
         text.push_str(&calibration_as_text(calibration, counted));
     }
-    if let Some(sequel) = &sequel {
-        text.push_str(&after::as_text(sequel, &object));
+    if let Some(follow_up) = &follow_up {
+        text.push_str(&after::as_text(follow_up, &object));
     }
     if let Some(next) = &next {
         text.push_str(&next::as_text(next, &object));

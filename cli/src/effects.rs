@@ -8,7 +8,7 @@ use engine::grains::Space;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, Range};
 use engine::units::format_si;
-use resistive::{OtherForm, RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins};
+use resistive::{Confounder, OtherForm, RESISTANCE_LAWS, ResistanceEntry, Role, confounders};
 use serde_json::{Value, json};
 
 use crate::bed_changes;
@@ -49,7 +49,7 @@ struct Described {
     /// What data must have to show an effect.
     shows_with: Vec<&'static str>,
     /// The effects that look like it.
-    twins: Vec<Twin>,
+    confounders: Vec<Confounder>,
     on_beds: OnBeds,
 }
 
@@ -117,7 +117,7 @@ impl From<&LawEntry> for Described {
             channels: law.channels.to_vec(),
             variables: &[],
             shows_with: Vec::new(),
-            twins: Vec::new(),
+            confounders: Vec::new(),
             on_beds: law.candidacy.into(),
         }
     }
@@ -143,7 +143,7 @@ impl From<&GrainForceEntry> for Described {
             channels: vec![Channel { name: force.name, kind: ChannelKind::Dissipated }],
             variables: &[],
             shows_with: Vec::new(),
-            twins: Vec::new(),
+            confounders: Vec::new(),
             on_beds: force.candidacy.into(),
         }
     }
@@ -174,7 +174,7 @@ impl From<&ResistanceEntry> for Described {
             channels: law.accounts.iter().map(|account| account.channel).collect(),
             variables: law.variables,
             shows_with: visible.iter().map(|need| need.describe()).collect(),
-            twins: twins(law.name).collect(),
+            confounders: confounders(law.name).collect(),
             on_beds: absent.map_or(OnBeds::Predicted, OnBeds::No),
         }
     }
@@ -292,9 +292,9 @@ fn as_text(law: &Described) -> String {
     if !law.shows_with.is_empty() {
         line("shows with", &law.shows_with.join(", "));
     }
-    for (index, twin) in law.twins.iter().enumerate() {
+    for (index, confounder) in law.confounders.iter().enumerate() {
         let name = if index == 0 { "separable" } else { "" };
-        line(name, &format!("from {}", twin.describe()));
+        line(name, &format!("from {}", confounder.describe()));
     }
     line("diagnosis", &law.on_beds.text());
     for (index, form) in law.forms.iter().enumerate() {
@@ -371,16 +371,16 @@ fn as_json(law: &Described) -> Value {
     if !law.shows_with.is_empty() {
         object["shows_with"] = json!(law.shows_with);
     }
-    if !law.twins.is_empty() {
-        let told_apart: Vec<Value> = law.twins.iter().map(twin_json).collect();
+    if !law.confounders.is_empty() {
+        let told_apart: Vec<Value> = law.confounders.iter().map(twin_json).collect();
         object["told_apart"] = json!(told_apart);
     }
     object
 }
 
-fn twin_json(twin: &Twin) -> Value {
-    let by: Vec<&str> = twin.any_of.iter().map(|need| need.describe()).collect();
-    json!({ "from": twin.effect, "by_any_of": by })
+fn twin_json(confounder: &Confounder) -> Value {
+    let by: Vec<&str> = confounder.any_of.iter().map(|need| need.describe()).collect();
+    json!({ "from": confounder.effect, "by_any_of": by })
 }
 
 fn parameter_json(spec: &ParamSpec) -> Value {

@@ -1,7 +1,7 @@
 //! A diagnosis as `plunge diagnose` prints it, and what is written with it.
 
-use diagnosis::bench::Bench;
 use diagnosis::calibrate::Calibration;
+use diagnosis::fit_problem::FitProblem;
 use diagnosis::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
@@ -17,14 +17,14 @@ use crate::workbench::{Flags, Results, failed};
 /// Adds to `files` where the model called `name` fails, and the page of all of them, and writes them to `results`.
 pub(crate) fn write(
     files: &mut Vec<(String, String)>,
-    (bench, name, diagnosis): (&Bench<'_>, &str, &Diagnosis),
+    (problem, name, diagnosis): (&FitProblem<'_>, &str, &Diagnosis),
     flags: &Flags,
     results: &Results,
 ) -> CommandResult {
-    let where_it_fails = WhereItFails::of_diagnosis(bench, name, diagnosis, flags.seed)
+    let where_it_fails = WhereItFails::of_diagnosis(problem, name, diagnosis, flags.seed)
         .map_err(|error| failed(error, name))?;
     if let Some(force) = &diagnosis.missing_force {
-        files.extend(files_of(force, bench.set).map_err(anyhow::Error::new)?);
+        files.extend(files_of(force, problem.set).map_err(anyhow::Error::new)?);
     }
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
     files.extend(report::of_results(files, flags.quiet));

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use configs::{LoadOptions, Loaded, Model};
-use diagnosis::bench::BenchError;
+use diagnosis::fit_problem::FitError;
 use diagnosis::missing_force;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
@@ -390,9 +390,9 @@ impl Candidate {
 }
 
 /// A failure of the numbers themselves: too little to fit to is bad input, the rest is not.
-pub(crate) fn failed(error: BenchError, name: &str) -> CommandError {
+pub(crate) fn failed(error: FitError, name: &str) -> CommandError {
     match error {
-        BenchError::TooFew { .. } | BenchError::NoErrors => {
+        FitError::TooFew { .. } | FitError::NoErrors => {
             CommandError::bad_input(format!("{name}: {error}"))
         }
         error => CommandError::Failed(anyhow::Error::new(error).context(name.to_owned())),

@@ -3,8 +3,8 @@
 use measurements::Condition;
 use serde::Serialize;
 
-use crate::bench::Bench;
 use crate::fit::Fit;
+use crate::fit_problem::FitProblem;
 use crate::forward::{Moment, Request, Scatter};
 use crate::observable::Observable;
 use crate::rounding::six_digits;
@@ -59,49 +59,49 @@ pub enum Size {
 
 /// What each effect of `fit` adds. `None` of effects that are no force against the motion, where the model cannot be
 /// integrated so far, and of beds of which no depth was measured.
-pub(crate) fn added_forces(bench: &Bench<'_>, fit: &Fit) -> Vec<Option<AddedForce>> {
+pub(crate) fn added_forces(problem: &FitProblem<'_>, fit: &Fit) -> Vec<Option<AddedForce>> {
     let n_effects = fit.point.effects.len();
-    if bench.forward.by_formulas().is_none() {
-        return (0..n_effects).map(|place| mean_force(bench, fit, place)).collect();
+    if problem.forward.by_formulas().is_none() {
+        return (0..n_effects).map(|place| mean_force(problem, fit, place)).collect();
     }
-    let Some(passages) = passages(bench, fit) else { return vec![None; n_effects] };
-    (0..n_effects).map(|place| greatest_force(bench, &passages, place)).collect()
+    let Some(passages) = passages(problem, fit) else { return vec![None; n_effects] };
+    (0..n_effects).map(|place| greatest_force(problem, &passages, place)).collect()
 }
 
 /// What effect `place` of `fit` adds to the mean force on the way down.
-fn mean_force(bench: &Bench<'_>, fit: &Fit, place: usize) -> Option<AddedForce> {
+fn mean_force(problem: &FitProblem<'_>, fit: &Fit, place: usize) -> Option<AddedForce> {
     let mut without = fit.point.clone();
     without.effects[place].1 = 0.0;
-    let changes = bench.observed.fit.iter().filter_map(|&condition| {
-        let with = way_down(bench, &fit.point, condition)?;
-        let without = way_down(bench, &without, condition)?;
+    let changes = problem.observed.fit.iter().filter_map(|&condition| {
+        let with = way_down(problem, &fit.point, condition)?;
+        let without = way_down(problem, &without, condition)?;
         Some((condition, with, with.1 - without.1))
     });
     let most = changes.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
     let (condition, (depth, of), mean) = most.filter(|(.., mean)| *mean != 0.0)?;
-    let Condition { id, speed, .. } = &bench.set.conditions[condition];
+    let Condition { id, speed, .. } = &problem.set.conditions[condition];
     let size = Size::OnTheWayDown { mean };
     Some(AddedForce { size, of, condition: id.clone(), depth, speed: *speed })
 }
 
 /// The greatest depth (m) that the model at `point` predicts for a condition, and the mean force on the way there (N).
-fn way_down(bench: &Bench<'_>, point: &Point, condition: usize) -> Option<(f64, f64)> {
-    let body = &bench.set.conditions[condition];
+fn way_down(problem: &FitProblem<'_>, point: &Point, condition: usize) -> Option<(f64, f64)> {
+    let body = &problem.set.conditions[condition];
     let fall = body.speed * libm::sin(body.angle_deg.to_radians());
-    let kinds = bench.observed.conditions[condition].layout.kinds();
-    let predicted = point.predict(bench.forward, condition).ok()?;
+    let kinds = problem.observed.conditions[condition].layout.kinds();
+    let predicted = point.predict(problem.forward, condition).ok()?;
     let is_depth = |kind: Observable| matches!(kind, Observable::Depth | Observable::FinalDepth);
     let depths = kinds.into_iter().zip(predicted.iter()).filter(|(kind, _)| is_depth(*kind));
     let depth = depths.map(|(_, depth)| *depth).fold(0.0, f64::max);
-    let gravity = bench.set.bed_of(body).gravity;
+    let gravity = problem.set.bed_of(body).gravity;
     (depth > 0.0).then(|| (depth, body.mass * (gravity + fall * fall / (2.0 * depth))))
 }
 
 /// What bodies go through in each condition, and what they would meet without each effect.
-fn passages(bench: &Bench<'_>, fit: &Fit) -> Option<Vec<(usize, Vec<Moment>)>> {
-    let by = bench.forward.by_formulas().filter(|_| !fit.point.effects.is_empty())?;
+fn passages(problem: &FitProblem<'_>, fit: &Fit) -> Option<Vec<(usize, Vec<Moment>)>> {
+    let by = problem.forward.by_formulas().filter(|_| !fit.point.effects.is_empty())?;
     let scatter = Scatter {
-        coefficients: vec![0.0; bench.forward.n_scattering_coefficients()],
+        coefficients: vec![0.0; problem.forward.n_scattering_coefficients()],
         ..Scatter::default()
     };
     let (parameters, effects) = (fit.point.parameters.as_slice(), fit.point.effects.as_slice());
@@ -118,12 +118,12 @@ fn passages(bench: &Bench<'_>, fit: &Fit) -> Option<Vec<(usize, Vec<Moment>)>> {
         let moments = by.passage(condition, &at(effects), &without, MOMENTS).ok()?;
         Some((condition, moments))
     };
-    bench.observed.fit.iter().map(of).collect()
+    problem.observed.fit.iter().map(of).collect()
 }
 
 /// What effect `place` adds where that is most along `passages`.
 fn greatest_force(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     passages: &[(usize, Vec<Moment>)],
     place: usize,
 ) -> Option<AddedForce> {
@@ -141,7 +141,7 @@ fn greatest_force(
     (added(most) != 0.0 && of_model != 0.0).then(|| AddedForce {
         size: Size::AtAMoment { greatest: added(most), share_of_work: work / of_model },
         of: most.force,
-        condition: bench.set.conditions[condition].id.clone(),
+        condition: problem.set.conditions[condition].id.clone(),
         depth: most.depth,
         speed: most.speed,
     })

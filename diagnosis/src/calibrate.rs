@@ -12,8 +12,8 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::diagnose::verdict;
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::forward::{ParameterKind, Scatter};
 use crate::observed::{Observed, ObservedCondition};
 use crate::random::{Purpose, normal, stream};
@@ -107,25 +107,25 @@ pub struct Row {
     pub covered: usize,
 }
 
-/// Simulates sets like that of `bench`, which `diagnosis` is of, and diagnoses them; equal seeds give equal numbers.
+/// Simulates sets like that of `problem`, which `diagnosis` is of, and diagnoses them; equal seeds give equal numbers.
 ///
 /// # Errors
 /// If the model fails, or `diagnosis` has no fit.
 pub fn calibrate(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     diagnosis: &Diagnosis,
     size: Size,
     seed: u64,
-) -> Result<Calibration, BenchError> {
-    let Some(baseline) = &diagnosis.baseline else { return Err(BenchError::NoErrors) };
-    let noise = bench
+) -> Result<Calibration, FitError> {
+    let Some(baseline) = &diagnosis.baseline else { return Err(FitError::NoErrors) };
+    let noise = problem
         .observed
         .conditions
         .iter()
         .enumerate()
-        .map(|(at, condition)| RunNoise::of(bench, baseline, (at, condition)))
+        .map(|(at, condition)| RunNoise::of(problem, baseline, (at, condition)))
         .collect::<Result<Vec<_>, _>>()?;
-    let truths = truths(bench, diagnosis, size);
+    let truths = truths(problem, diagnosis, size);
     let sets = truths
         .par_iter()
         .enumerate()
@@ -135,25 +135,26 @@ pub fn calibrate(
             // that floats and drifts never comes to rest.
             for halvings in 0..DRAWS {
                 let truth = &truth.weakened(halvings);
-                let Some(observed) = simulate(bench, baseline, (&noise, truth), &mut random) else {
+                let Some(observed) = simulate(problem, baseline, (&noise, truth), &mut random)
+                else {
                     continue;
                 };
-                let simulated = Bench { observed: &observed, ..*bench };
+                let simulated = FitProblem { observed: &observed, ..*problem };
                 match verdict(&simulated, seed) {
-                    Ok(said) => return Ok(Some(judged(bench, truth, &said))),
-                    Err(BenchError::Predict(_)) => (),
+                    Ok(said) => return Ok(Some(judged(problem, truth, &said))),
+                    Err(FitError::Predict(_)) => (),
                     Err(other) => return Err(other),
                 }
             }
             Ok(None)
         })
-        .collect::<Result<Vec<_>, BenchError>>()?;
+        .collect::<Result<Vec<_>, FitError>>()?;
     Ok(Calibration { sets: sets.into_iter().flatten().collect() })
 }
 
 /// What is to be true in each set.
-fn truths(bench: &Bench<'_>, diagnosis: &Diagnosis, size: Size) -> Vec<Truth> {
-    let candidates = bench.forward.candidates();
+fn truths(problem: &FitProblem<'_>, diagnosis: &Diagnosis, size: Size) -> Vec<Truth> {
+    let candidates = problem.forward.candidates();
     let effects: Vec<Truth> = diagnosis
         .ranking
         .iter()
@@ -185,17 +186,17 @@ struct RunNoise {
 
 impl RunNoise {
     fn of(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         fitted: &Fitted,
         (at, condition): (usize, &ObservedCondition),
-    ) -> Result<Self, BenchError> {
+    ) -> Result<Self, FitError> {
         if condition.layout.is_empty() {
             return Ok(Self { factor: DMatrix::zeros(0, 0), shift: DVector::zeros(0) });
         }
-        let sensitivity = bench.sensitivity(&fitted.fit.point, at)?;
+        let sensitivity = problem.sensitivity(&fitted.fit.point, at)?;
         let covariance = fitted.noise.covariance(condition, &sensitivity);
         let factor = Cholesky::new(covariance)
-            .ok_or_else(|| BenchError::Singular { id: condition.id.clone() })?
+            .ok_or_else(|| FitError::Singular { id: condition.id.clone() })?
             .l();
         Ok(Self { factor, shift: sensitivity.shift_of_mean(&fitted.noise.spread) })
     }
@@ -203,13 +204,13 @@ impl RunNoise {
 
 /// Runs of every condition in which `truth` holds; `None` where the model cannot be integrated with it.
 fn simulate(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     baseline: &Fitted,
     (noise, truth): (&[RunNoise], &Truth),
     random: &mut Pcg64,
 ) -> Option<Observed> {
     let mut point = Point { effects: Vec::new(), ..baseline.fit.point.clone() };
-    for (value, parameter) in point.parameters.iter_mut().zip(bench.forward.parameters()) {
+    for (value, parameter) in point.parameters.iter_mut().zip(problem.forward.parameters()) {
         if let Some(prior) = parameter.prior.filter(|_| parameter.kind != ParameterKind::Model) {
             let drawn = prior.mean + prior.sigma * normal(random);
             *value = drawn.clamp(parameter.min, parameter.max);
@@ -218,19 +219,19 @@ fn simulate(
     if let Truth::Effect(index, q) = *truth {
         point.effects.push((index, q));
     }
-    let mut observed = bench.observed.clone();
+    let mut observed = problem.observed.clone();
     let reach = observed.conditions.iter().fold(0.0, |reach, one| f64::max(reach, one.reach));
     let along = match truth {
         Truth::Unlisted => unlisted(random),
         _ => Vec::new(),
     };
-    let coefficients = vec![0.0; bench.forward.n_scattering_coefficients()];
+    let coefficients = vec![0.0; problem.forward.n_scattering_coefficients()];
     let scatter = Scatter { coefficients, along, reach, ..Scatter::default() };
     for (at, (condition, noise)) in observed.conditions.iter_mut().zip(noise).enumerate() {
         if condition.layout.is_empty() {
             continue;
         }
-        let mean = point.predict_run(bench.forward, at, &scatter).ok()? + &noise.shift;
+        let mean = point.predict_run(problem.forward, at, &scatter).ok()? + &noise.shift;
         for run in &mut condition.runs {
             let white = DVector::from_fn(mean.len(), |_, _| normal(random));
             *run = &mean + &noise.factor * white;
@@ -252,7 +253,7 @@ fn unlisted(random: &mut Pcg64) -> Vec<f64> {
     (0..NODES).map(wave).collect()
 }
 
-fn judged(bench: &Bench<'_>, truth: &Truth, said: &Diagnosis) -> Simulated {
+fn judged(problem: &FitProblem<'_>, truth: &Truth, said: &Diagnosis) -> Simulated {
     let named = match said.verdict {
         Verdict::NotSeparable => said.not_separable.clone(),
         _ => said.effects.clone(),
@@ -261,7 +262,7 @@ fn judged(bench: &Bench<'_>, truth: &Truth, said: &Diagnosis) -> Simulated {
         Truth::Nothing => ("nothing".to_owned(), None),
         Truth::Unlisted => ("unlisted".to_owned(), None),
         Truth::Effect(index, q) => {
-            let id = bench.forward.candidates()[*index].id.clone();
+            let id = problem.forward.candidates()[*index].id.clone();
             let alone = said.amplitudes.iter().find(|one| one.id == id && named.len() == 1);
             let holds = |[least, most]: [Option<f64>; 2]| {
                 least.is_none_or(|least| least <= *q) && most.is_none_or(|most| *q <= most)

@@ -5,8 +5,8 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use thiserror::Error;
 
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceError;
 use crate::forward::Forward;
@@ -28,8 +28,8 @@ pub struct Revision<'a> {
 }
 
 impl<'a> Revision<'a> {
-    fn bench(&self, set: &'a MeasurementSet, observed: &'a Observed) -> Bench<'a> {
-        Bench { set, observed, forward: self.forward }
+    fn problem(&self, set: &'a MeasurementSet, observed: &'a Observed) -> FitProblem<'a> {
+        FitProblem { set, observed, forward: self.forward }
     }
 }
 
@@ -107,7 +107,7 @@ pub struct CompareError {
     pub model: String,
     /// Why not.
     #[source]
-    pub error: BenchError,
+    pub error: FitError,
 }
 
 /// Compares every one of `revisions` with `set`, whose observables are `observed`.
@@ -128,18 +128,18 @@ pub fn compare(
     };
     let mut all_fitted = Vec::with_capacity(revisions.len());
     for revision in revisions {
-        all_fitted.push(fitted(&revision.bench(set, observed), seed).map_err(of(revision))?);
+        all_fitted.push(fitted(&revision.problem(set, observed), seed).map_err(of(revision))?);
     }
     let asked: Vec<_> = revisions
         .iter()
         .zip(&all_fitted)
-        .map(|(revision, (fitted, _))| (revision.bench(set, observed), &fitted.fit.point))
+        .map(|(revision, (fitted, _))| (revision.problem(set, observed), &fitted.fit.point))
         .collect();
     let (holdout, not_predicted) = predictable(&asked);
     let mut models = Vec::with_capacity(revisions.len());
     for (revision, fitted) in revisions.iter().zip(all_fitted) {
         let model =
-            compare_one(&revision.bench(set, observed), revision.name, (fitted, &holdout), seed);
+            compare_one(&revision.problem(set, observed), revision.name, (fitted, &holdout), seed);
         models.push(model.map_err(of(revision))?);
     }
     let best =
@@ -163,34 +163,34 @@ pub fn compare(
     Ok(Comparison { set: set.id.clone(), models, noise, conditions_judged, not_predicted, notes })
 }
 
-/// The model of `bench` fitted, with its probability of a lack of fit.
-fn fitted(bench: &Bench<'_>, seed: u64) -> Result<(Fitted, Option<f64>), BenchError> {
-    let start = Point::start(bench.forward);
-    let fitted = match bench.fit(&start) {
-        Err(BenchError::NoErrors) => bench.fit_from(&start, &Noise::assumed()),
+/// The model of `problem`, fitted, with its probability of a lack of fit.
+fn fitted(problem: &FitProblem<'_>, seed: u64) -> Result<(Fitted, Option<f64>), FitError> {
+    let start = Point::start(problem.forward);
+    let fitted = match problem.fit(&start) {
+        Err(FitError::NoErrors) => problem.fit_from(&start, &Noise::assumed()),
         other => other,
     }?;
     let p_lof = match fitted.noise.source {
         NoiseSource::Assumed => None,
         NoiseSource::Repeats | NoiseSource::Stated | NoiseSource::AssumedScatter => {
-            lack_of_fit(bench, &fitted, seed)?
+            lack_of_fit(problem, &fitted, seed)?
         }
     };
     Ok((fitted, p_lof))
 }
 
 fn compare_one(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     name: &str,
     ((fitted, p_lof), holdout): ((Fitted, Option<f64>), &[usize]),
     seed: u64,
-) -> Result<ModelComparison, BenchError> {
-    let failing = Failing::of(bench, (name, &fitted), holdout, seed)?;
-    let measured = fitted.fit.residual.rows(0, bench.data(&fitted.weights).measured());
+) -> Result<ModelComparison, FitError> {
+    let failing = Failing::of(problem, (name, &fitted), holdout, seed)?;
+    let measured = fitted.fit.residual.rows(0, problem.data(&fitted.weights).measured());
     let json = |errors: &Option<Errors>| errors.as_ref().map_or(Value::Null, Errors::to_json);
     Ok(ModelComparison {
         model: name.to_owned(),
-        parameters: parameters(bench.forward, &fitted.fit),
+        parameters: parameters(problem.forward, &fitted.fit),
         chi2_per_n: measured.norm_squared() / measured.len() as f64,
         p_lof,
         rms: Rms { fit: json(&failing.fit), holdout: json(&failing.holdout) },

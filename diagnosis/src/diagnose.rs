@@ -6,7 +6,7 @@
 
 use std::cell::OnceCell;
 
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::held_out::HeldOut;
 use crate::judge::{Grounds, Judge, adequate, cannot_tell, nothing, unexplained};
@@ -23,80 +23,81 @@ pub use crate::judge::ALPHA;
 /// How often weights and ranking are taken in turn: the weights are those along the best model.
 const ROUNDS: usize = 2;
 
-/// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
+/// Diagnoses the model on `problem`; equal `seed` and measurements give equal bytes.
 ///
 /// # Errors
 /// If the model fails.
-pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
-    let mut diagnosis = verdict(bench, seed)?;
+pub fn diagnose(problem: &FitProblem<'_>, seed: u64) -> Result<Diagnosis, FitError> {
+    let mut diagnosis = verdict(problem, seed)?;
     // Of a bed it is sought once, when impacts have confirmed the verdict.
     let is_asked = diagnosis.verdict == Verdict::NoneOfTheCandidates;
-    if is_asked && bench.forward.by_formulas().is_some() {
-        seek_missing_force(bench, &mut diagnosis)?;
+    if is_asked && problem.forward.by_formulas().is_some() {
+        seek_missing_force(problem, &mut diagnosis)?;
     }
     Ok(diagnosis)
 }
 
 /// The same without the missing force, whose search takes longer than all the rest.
-pub(crate) fn verdict(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
-    let baseline = match bench.fit(&Point::start(bench.forward)) {
+pub(crate) fn verdict(problem: &FitProblem<'_>, seed: u64) -> Result<Diagnosis, FitError> {
+    let baseline = match problem.fit(&Point::start(problem.forward)) {
         Ok(fitted) => fitted,
-        Err(why @ (BenchError::NoErrors | BenchError::TooFew { .. })) => {
-            return Ok(cannot_tell(bench, why.to_string()));
+        Err(why @ (FitError::NoErrors | FitError::TooFew { .. })) => {
+            return Ok(cannot_tell(problem, why.to_string()));
         }
         Err(other) => return Err(other),
     };
-    match ranked_by(bench, &baseline, seed)? {
+    match ranked_by(problem, &baseline, seed)? {
         Some(judge) => judge.verdict(),
-        None => Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned())),
+        None => Ok(cannot_tell(problem, "no effect can be tested with these data".to_owned())),
     }
 }
 
 /// All effects beside `baseline`; `None` where none can be tested.
 fn ranked_by<'a>(
-    bench: &'a Bench<'a>,
+    problem: &'a FitProblem<'a>,
     baseline: &Fitted,
     seed: u64,
-) -> Result<Option<Judge<'a>>, BenchError> {
-    let candidates: Vec<usize> = (0..bench.forward.candidates().len())
-        .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
+) -> Result<Option<Judge<'a>>, FitError> {
+    let candidates: Vec<usize> = (0..problem.forward.candidates().len())
+        .filter(|&index| problem.forward.candidates()[index].not_testable.is_none())
         .collect();
-    let marginals = marginals(bench, baseline, &candidates, seed)?;
+    let marginals = marginals(problem, baseline, &candidates, seed)?;
     let weighed = match marginals {
         Some(Marginals { between, .. }) => {
-            bench.fit_once(&baseline.fit.point, &Noise { between, ..baseline.noise })?
+            problem.fit_once(&baseline.fit.point, &Noise { between, ..baseline.noise })?
         }
         None => baseline.clone(),
     };
     let rank = |weighed: &Fitted| match &marginals {
-        Some(marginals) => Ranking::by_likelihood(bench, weighed, marginals, seed),
-        None => Ranking::of(bench, weighed, &candidates, seed),
+        Some(marginals) => Ranking::by_likelihood(problem, weighed, marginals, seed),
+        None => Ranking::of(problem, weighed, &candidates, seed),
     };
-    let settled = |mut weighed: Fitted| -> Result<Option<(Fitted, Ranking, Fitted)>, BenchError> {
+    let settled = |mut weighed: Fitted| -> Result<Option<(Fitted, Ranking, Fitted)>, FitError> {
         let mut ranking = rank(&weighed);
         for _ in 1..ROUNDS {
-            let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
+            let leader = lead(problem, &mut ranking, &weighed, marginals.as_ref())?;
             let Some(leader) = leader else { break };
-            let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
+            let fit = problem.data(&leader.weights).fit(&baseline.fit.point)?;
             weighed = Fitted { fit, ..leader };
             ranking = rank(&weighed);
         }
-        let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
+        let leader = lead(problem, &mut ranking, &weighed, marginals.as_ref())?;
         Ok(leader.map(|leader| (weighed, ranking, leader)))
     };
     // A model that lacks a force across the motion takes it for angles that are off: effects are tried with angles as well
     // known as they are beforehand, and with exact ones.
-    let exact = bench.with_angles_within(0.0, &weighed)?;
+    let exact = problem.with_angles_within(0.0, &weighed)?;
     let exact = exact.and_then(|exact| settled(exact).ok().flatten());
-    let known = bench.with_angles_within(weighed.noise.angles.sigma, &weighed)?.unwrap_or(weighed);
+    let known =
+        problem.with_angles_within(weighed.noise.angles.sigma, &weighed)?.unwrap_or(weighed);
     let both = settled(known)?.into_iter().chain(exact);
     let best = both.min_by(|(.., a), (.., b)| a.deviance().total_cmp(&b.deviance()));
     Ok(best.map(|(weighed, ranking, leader)| Judge {
-        bench,
+        problem,
         seed,
         baseline: baseline.clone(),
         weighed,
-        alike: ranking.not_separable(bench),
+        alike: ranking.not_separable(problem),
         ranking,
         leader,
         of_any_force: OnceCell::new(),
@@ -107,21 +108,21 @@ fn ranked_by<'a>(
 ///
 /// # Errors
 /// If the model fails.
-pub(crate) fn as_it_is(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
-    let baseline = match bench.fit(&Point::start(bench.forward)) {
+pub(crate) fn as_it_is(problem: &FitProblem<'_>, seed: u64) -> Result<Diagnosis, FitError> {
+    let baseline = match problem.fit(&Point::start(problem.forward)) {
         Ok(fitted) => fitted,
-        Err(why @ (BenchError::NoErrors | BenchError::TooFew { .. })) => {
-            return Ok(cannot_tell(bench, why.to_string()));
+        Err(why @ (FitError::NoErrors | FitError::TooFew { .. })) => {
+            return Ok(cannot_tell(problem, why.to_string()));
         }
         Err(other) => return Err(other),
     };
-    let ranking = Ranking::of(bench, &baseline, &[], seed);
+    let ranking = Ranking::of(problem, &baseline, &[], seed);
     let (weighed, leader) = (baseline.clone(), baseline.clone());
     let (alike, of_any_force) = (Vec::new(), OnceCell::new());
-    let judge = Judge { bench, seed, baseline, weighed, ranking, alike, leader, of_any_force };
-    let p_lof = lack_of_fit(bench, &judge.baseline, seed)?;
+    let judge = Judge { problem, seed, baseline, weighed, ranking, alike, leader, of_any_force };
+    let p_lof = lack_of_fit(problem, &judge.baseline, seed)?;
     let verdict = match adequate(p_lof) {
-        true => nothing(bench, &judge.baseline),
+        true => nothing(problem, &judge.baseline),
         false => Verdict::NoneOfTheCandidates,
     };
     judge.diagnosis(verdict, &judge.baseline, Grounds { p_lof, ..Grounds::default() })
@@ -130,16 +131,16 @@ pub(crate) fn as_it_is(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchE
 /// The model with the best effect under its own noise; effects around whose fit the model cannot be
 /// integrated are taken out on the way.
 fn lead(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     ranking: &mut Ranking,
     weighed: &Fitted,
     marginals: Option<&Marginals>,
-) -> Result<Option<Fitted>, BenchError> {
+) -> Result<Option<Fitted>, FitError> {
     while let Some(best) = ranking.scores.first() {
         let noise =
             marginals.map_or(weighed.noise, |all| all.noise_with(&weighed.noise, best.candidate()));
-        match bench.fit_once(&best.point, &noise) {
-            Err(BenchError::Predict(why)) => ranking.give_up_first(why),
+        match problem.fit_once(&best.point, &noise) {
+            Err(FitError::Predict(why)) => ranking.give_up_first(why),
             other => return other.map(Some),
         }
     }
@@ -150,10 +151,13 @@ fn lead(
 ///
 /// # Errors
 /// If the model fails.
-pub fn seek_missing_force(bench: &Bench<'_>, diagnosis: &mut Diagnosis) -> Result<(), BenchError> {
+pub fn seek_missing_force(
+    problem: &FitProblem<'_>,
+    diagnosis: &mut Diagnosis,
+) -> Result<(), FitError> {
     if let (Some(baseline), None) = (&diagnosis.baseline, &diagnosis.missing_force) {
         let best = diagnosis.ranking.first().and_then(|effect| effect.delta);
-        diagnosis.missing_force = missing_force(bench, baseline, best)?;
+        diagnosis.missing_force = missing_force(problem, baseline, best)?;
     }
     Ok(())
 }
@@ -163,11 +167,11 @@ pub fn seek_missing_force(bench: &Bench<'_>, diagnosis: &mut Diagnosis) -> Resul
 /// # Errors
 /// If the model fails.
 pub(crate) fn withdraw(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     diagnosis: Diagnosis,
     why: String,
     seed: u64,
-) -> Result<Diagnosis, BenchError> {
+) -> Result<Diagnosis, FitError> {
     let Some(baseline) = &diagnosis.baseline else { return Ok(diagnosis) };
     let is_above = diagnosis.holdout.as_ref().and_then(HeldOut::is_above_noise);
     let is_small = is_above == Some(false);
@@ -175,7 +179,7 @@ pub(crate) fn withdraw(
     let is_clear = is_above == Some(true) && diagnosis.p1.is_some_and(|p| p <= ALPHA);
     let verdict = match adequate(diagnosis.p_lof) {
         true if is_clear => Verdict::BelowNoise,
-        true => nothing(bench, baseline),
+        true => nothing(problem, baseline),
         false if is_small => Verdict::BelowNoise,
         false => Verdict::NoneOfTheCandidates,
     };
@@ -185,15 +189,15 @@ pub(crate) fn withdraw(
         verdict,
         strength: Strength::of(&strength_reasons),
         strength_reasons,
-        unexplained: unexplained(bench, verdict, baseline, (why, seed))?,
+        unexplained: unexplained(problem, verdict, baseline, (why, seed))?,
         effects: Vec::new(),
         not_separable: Vec::new(),
         amplitudes: Vec::new(),
         amplitude_correlation: None,
-        parameters: parameters(bench.forward, &baseline.fit),
-        apparatus: ApparatusError::all(bench.forward, baseline),
-        preparation: ApparatusError::of_preparation(bench.forward, &baseline.fit),
-        noise: baseline.noise.to_json(bench.set, bench.forward),
+        parameters: parameters(problem.forward, &baseline.fit),
+        apparatus: ApparatusError::all(problem.forward, baseline),
+        preparation: ApparatusError::of_preparation(problem.forward, &baseline.fit),
+        noise: baseline.noise.to_json(problem.set, problem.forward),
         proposed: Some(baseline.clone()),
         ..diagnosis
     })

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::bench::Bench;
 use crate::covariate::OF_CONDITIONS;
+use crate::fit_problem::FitProblem;
 use crate::projection::Basis;
 
 /// What is looked at of each condition, as whitened columns: changes by forces around depths against the motion, likewise
@@ -57,15 +57,19 @@ pub(crate) struct Along {
 
 impl Directions {
     /// Beside the columns of `imitated`, which the model can do; `looked` has what is looked at of every condition.
-    pub(crate) fn new(bench: &Bench<'_>, imitated: &DMatrix<f64>, looked: &[Looked]) -> Self {
+    pub(crate) fn new(
+        problem: &FitProblem<'_>,
+        imitated: &DMatrix<f64>,
+        looked: &[Looked],
+    ) -> Self {
         let rows = imitated.nrows();
         let parameters = Basis::of(imitated);
         let mut coherent =
-            Basis::beside(&stacked(looked, rows, &varied(bench), WHOLE), &parameters);
+            Basis::beside(&stacked(looked, rows, &varied(problem), WHOLE), &parameters);
         let plain = coherent.len();
-        coherent.extend(&stacked(looked, rows, &factors(bench), MODES), &parameters);
+        coherent.extend(&stacked(looked, rows, &factors(problem), MODES), &parameters);
         let n_smooth = coherent.len();
-        coherent.extend(&stacked(looked, rows, &factors(bench), [ALL; 3]), &parameters);
+        coherent.extend(&stacked(looked, rows, &factors(problem), [ALL; 3]), &parameters);
         let (coherent, parameters) = (coherent.to_matrix(rows), parameters.to_matrix(rows));
         let mut start = 0;
         let conditions = looked.iter().map(|looked| {
@@ -174,23 +178,23 @@ fn modes(looked: &Looked, count: [usize; 3]) -> DMatrix<f64> {
 }
 
 /// By what a coherent change may differ between conditions: not at all, with the speed, with the angle.
-fn factors(bench: &Bench<'_>) -> Vec<Vec<f64>> {
-    let conditions = bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]);
-    let one = vec![1.0; bench.observed.fit.len()];
+fn factors(problem: &FitProblem<'_>) -> Vec<Vec<f64>> {
+    let conditions = problem.observed.fit.iter().map(|&index| &problem.set.conditions[index]);
+    let one = vec![1.0; problem.observed.fit.len()];
     let speed = standardised(conditions.clone().map(|condition| condition.speed).collect());
     let angle = standardised(conditions.map(|condition| condition.angle_deg).collect());
     vec![one, speed, angle]
 }
 
 /// Everything that was varied and the place in the campaign, one value per condition.
-fn varied(bench: &Bench<'_>) -> Vec<Vec<f64>> {
-    let fit = || bench.observed.fit.iter();
+fn varied(problem: &FitProblem<'_>) -> Vec<Vec<f64>> {
+    let fit = || problem.observed.fit.iter();
     let of_conditions = OF_CONDITIONS.iter().filter_map(|(_, value)| {
-        fit().map(|&index| value(&bench.set.conditions[index])).collect::<Option<Vec<f64>>>()
+        fit().map(|&index| value(&problem.set.conditions[index])).collect::<Option<Vec<f64>>>()
     });
     let order: Option<Vec<f64>> = fit()
         .map(|&index| {
-            let orders = bench.observed.conditions[index].order.iter().copied();
+            let orders = problem.observed.conditions[index].order.iter().copied();
             let orders: Vec<i64> = orders.collect::<Option<_>>()?;
             let n = orders.len().max(1) as f64;
             Some(orders.iter().sum::<i64>() as f64 / n)

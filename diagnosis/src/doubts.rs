@@ -1,6 +1,6 @@
 //! Reasons of a fit for which its verdict is no more than suggested, and what its noise is known from.
 
-use crate::bench::{Bench, Fitted};
+use crate::fit_problem::{FitProblem, Fitted};
 use crate::held_out::HeldOut;
 use crate::noise::NoiseSource;
 use crate::verdict::{Amplitude, Evidence, StrengthReason};
@@ -18,12 +18,12 @@ const NO_REPEATS: f64 = 0.5;
 /// more: each amplitude is at most two standard errors outside of its usual range; no error of the apparatus is far beyond
 /// its stated size; held-out conditions are predicted better; none becomes unpredictable.
 pub(crate) fn doubts(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     proposed: &Fitted,
     amplitudes: &[Amplitude],
     held_out: &HeldOut,
 ) -> Vec<StrengthReason> {
-    let few = bench.observed.contrasts() < CONTRASTS;
+    let few = problem.observed.contrasts() < CONTRASTS;
     let mut doubts: Vec<StrengthReason> = match proposed.noise.source {
         NoiseSource::Repeats => few.then_some(StrengthReason::FewRepeats).into_iter().collect(),
         NoiseSource::Stated => vec![StrengthReason::StatedErrors],
@@ -35,7 +35,7 @@ pub(crate) fn doubts(
     if amplitudes.iter().any(|amplitude| amplitude.unusual) {
         doubts.push(StrengthReason::AmplitudeOutsideUsualRange);
     }
-    if bench.data(&proposed.weights).is_strained(&proposed.fit.point) {
+    if problem.data(&proposed.weights).is_strained(&proposed.fit.point) {
         doubts.push(StrengthReason::ApparatusFarFromStated);
     }
     doubts.extend(held_out.doubt());
@@ -43,9 +43,9 @@ pub(crate) fn doubts(
 }
 
 /// What the noise of `fitted` is known from.
-pub(crate) fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
+pub(crate) fn evidence(problem: &FitProblem<'_>, fitted: &Fitted) -> Evidence {
     match fitted.noise.source {
-        NoiseSource::Repeats if bench.observed.contrasts() < CONTRASTS => Evidence::FewRepeats,
+        NoiseSource::Repeats if problem.observed.contrasts() < CONTRASTS => Evidence::FewRepeats,
         NoiseSource::Repeats => Evidence::Repeats,
         NoiseSource::Stated | NoiseSource::AssumedScatter | NoiseSource::Assumed => {
             Evidence::StatedErrors

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use serde_json::{Map, Value};
 
-use crate::bench::{Bench, BenchError};
+use crate::fit_problem::{FitError, FitProblem};
 use crate::observable::Observable;
 use crate::observed::ObservedCondition;
 use crate::rounding::rounded;
@@ -26,17 +26,17 @@ impl Errors {
     /// # Errors
     /// If the model fails.
     pub fn at(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         point: &Point,
         conditions: &[usize],
-    ) -> Result<Option<Self>, BenchError> {
+    ) -> Result<Option<Self>, FitError> {
         let mut sums = Sums::default();
         for &condition in conditions {
-            let observed = &bench.observed.conditions[condition];
-            let predicted = point.predict(bench.forward, condition)?;
+            let observed = &problem.observed.conditions[condition];
+            let predicted = point.predict(problem.forward, condition)?;
             if predicted.len() != observed.mean.len() {
                 let (found, expected) = (predicted.len(), observed.mean.len());
-                return Err(BenchError::Layout { id: observed.id.clone(), found, expected });
+                return Err(FitError::Layout { id: observed.id.clone(), found, expected });
             }
             sums.add(observed, &(&observed.mean - predicted));
         }

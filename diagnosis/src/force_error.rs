@@ -18,9 +18,9 @@ pub use self::trend::Trend;
 use self::chronology::Chronology;
 use self::normal::Normal;
 use self::part::p_value;
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::covariate::OF_CONDITIONS;
 use crate::discovery::discoveries;
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 
 /// Share of false marks that is tolerated.
 const FALSE_DISCOVERIES: f64 = 0.05;
@@ -43,13 +43,13 @@ impl ForceErrors {
     ///
     /// # Errors
     /// If the model fails.
-    pub fn of(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Result<Self, BenchError> {
-        let normals = Normal::all(bench, fitted)?;
-        let chronology = Chronology::of(bench, fitted, &normals, seed);
+    pub fn of(problem: &FitProblem<'_>, fitted: &Fitted, seed: u64) -> Result<Self, FitError> {
+        let normals = Normal::all(problem, fitted)?;
+        let chronology = Chronology::of(problem, fitted, &normals, seed);
         let mut errors = groups::over_depth(&normals);
         let mut trends: Vec<Trend> = trend::over_depth(&normals).into_iter().collect();
         for (over, of) in OF_CONDITIONS {
-            let value = |at: usize| of(&bench.set.conditions[at]);
+            let value = |at: usize| of(&problem.set.conditions[at]);
             errors.extend(groups::over_conditions(&normals, over, value));
             trends.extend(trend::over_conditions(&normals, over, value));
         }

@@ -252,7 +252,7 @@ pub struct Candidate {
     pub step: f64,
     /// Why these data cannot show it at all; `None` if they can.
     pub not_testable: Option<String>,
-    /// What it takes to tell it from its twins, in words; empty if it has none.
+    /// What it takes to tell it from its confounders, in words; empty if it has none.
     pub separable_from: String,
     /// Ids of the candidates that these data cannot tell it from, because they lack what it takes; each
     /// of them has it likewise.

@@ -1,19 +1,19 @@
 //! Errors on conditions that were not fitted to.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+mod predicted;
+
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
-use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::error_unit::Unit;
 use crate::errors::{Errors, Sums};
-use crate::fit::Data;
-use crate::noise::log_determinant;
+use crate::fit_problem::{DEFAULT_SEED, FitError, FitProblem, Fitted};
 use crate::noise_floor::{floor_of_both, noise_floor};
 use crate::observed::Observed;
 use crate::random::{Purpose, stream};
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::strength::StrengthReason;
+use predicted::{Pair, Predicted, in_both};
 
 /// Errors on held-out conditions without and with what is proposed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -112,12 +112,6 @@ const MOST: f64 = 1.0 / 3.0;
 /// Share of what exceeds noise from which an effect leaves nothing that counts: none follows its formula exactly.
 const NEARLY_ALL: f64 = 0.95;
 
-/// Share of the information on a combination of parameters that has to be left without a condition.
-const ALONE: f64 = 1e-8;
-
-/// A Gauss-Newton step that leaves so many times more of a condition than the fit to all is taken for one too far.
-const FAR: f64 = 2.0;
-
 /// Least error without an effect, in multiples of the noise, from which a fall to the noise counts although few conditions
 /// show it.
 const FAR_ABOVE: f64 = 2.5;
@@ -154,43 +148,43 @@ impl HeldOut {
     ///
     /// # Errors
     /// If the model fails.
-    pub fn of(bench: &Bench<'_>, before: &Fitted, after: &Fitted) -> Result<Self, BenchError> {
-        let unit = Unit::of(bench.set.kind);
+    pub fn of(problem: &FitProblem<'_>, before: &Fitted, after: &Fitted) -> Result<Self, FitError> {
+        let unit = Unit::of(problem.set.kind);
         let pick = |errors: &Errors| unit.pick(errors);
-        let (conditions, judged) = match bench.observed.holdout.is_empty() {
-            true => (LeftOut::OneAtATime, &bench.observed.fit),
-            false => (LeftOut::Holdout, &bench.observed.holdout),
+        let (conditions, judged) = match problem.observed.holdout.is_empty() {
+            true => (LeftOut::OneAtATime, &problem.observed.fit),
+            false => (LeftOut::Holdout, &problem.observed.holdout),
         };
         let is_proposed = !after.fit.point.effects.is_empty();
-        let in_turn = |fitted: &Fitted| Predicted::left_out(bench, after, fitted);
+        let in_turn = |fitted: &Fitted| Predicted::left_out(problem, after, fitted);
         let fitted_to: Vec<Pair> = match conditions {
             LeftOut::Holdout if is_proposed => {
-                let fit = &bench.observed.fit;
-                in_both(bench.observed, fit, in_turn(before)?, in_turn(after)?).0
+                let fit = &problem.observed.fit;
+                in_both(problem.observed, fit, in_turn(before)?, in_turn(after)?).0
             }
             _ => Vec::new(),
         };
         let predict = |fitted: &Fitted| match conditions {
-            LeftOut::Holdout => Predicted::unseen(bench, after, fitted, judged),
+            LeftOut::Holdout => Predicted::unseen(problem, after, fitted, judged),
             LeftOut::OneAtATime => in_turn(fitted),
         };
         let (both, not_predicted) =
-            in_both(bench.observed, judged, predict(before)?, predict(after)?);
+            in_both(problem.observed, judged, predict(before)?, predict(after)?);
         // A few held-out conditions do not determine the ratio: fitted conditions are left out in turn as well.
         let all: Vec<&Pair> = both.iter().chain(&fitted_to).collect();
         let error = |which: fn(&(usize, Predicted, Predicted)) -> (usize, &Predicted)| {
             let mut sums = Sums::default();
             for (condition, predicted) in both.iter().map(which) {
-                let observed = &bench.observed.conditions[condition];
+                let observed = &problem.observed.conditions[condition];
                 sums.add(observed, &predicted.error);
             }
             pick(&sums.errors())
         };
         let compared: Vec<usize> = both.iter().map(|(condition, ..)| *condition).collect();
-        let noise = match bench.forward.is_judged_by_held_out() {
-            true => noise_floor(bench.observed, &compared),
+        let noise = match problem.forward.is_judged_by_held_out() {
+            true => noise_floor(problem.observed, &compared),
             // Means of impacts scatter as those of measurements do.
-            false => floor_of_both(bench.observed, before, &compared),
+            false => floor_of_both(problem.observed, before, &compared),
         };
         let errors = Self::share(
             error(|(condition, before, _)| (*condition, before)),
@@ -207,7 +201,9 @@ impl HeldOut {
             conditions,
             conditions_judged: compared.len(),
             not_predicted,
-            ratio_at_most: is_proposed.then(|| ratio_at_most(bench.observed, &all, unit)).flatten(),
+            ratio_at_most: is_proposed
+                .then(|| ratio_at_most(problem.observed, &all, unit))
+                .flatten(),
             log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
         })
     }
@@ -395,222 +391,4 @@ fn ratio_at_most(observed: &Observed, all: &[&Pair], unit: Unit) -> Option<f64> 
         .collect();
     ratios.sort_by(f64::total_cmp);
     Some(ratios[(CHOICES * 9).div_ceil(10) - 1]).filter(|ratio| ratio.is_finite())
-}
-
-/// A condition with both predictions of it.
-type Pair = (usize, Predicted, Predicted);
-
-/// A condition as a model predicts it, or why it does not.
-type Attempt = Result<Predicted, String>;
-
-/// Those of `conditions` that were predicted both before and after, with both predictions; and the others.
-fn in_both(
-    observed: &Observed,
-    conditions: &[usize],
-    before: Vec<Attempt>,
-    after: Vec<Attempt>,
-) -> (Vec<Pair>, Vec<NotPredicted>) {
-    let (mut both, mut others) = (Vec::new(), Vec::new());
-    for (&condition, pair) in conditions.iter().zip(before.into_iter().zip(after)) {
-        let (by, why) = match pair {
-            (Ok(before), Ok(after)) => {
-                both.push((condition, before, after));
-                continue;
-            }
-            (Err(why), Ok(_)) => (Fails::Before, why),
-            (Ok(_), Err(why)) => (Fails::After, why),
-            (Err(why), Err(_)) => (Fails::Both, why),
-        };
-        let condition = observed.conditions[condition].id.clone();
-        others.push(NotPredicted { condition, by, why });
-    }
-    (both, others)
-}
-
-/// A condition predicted by a fit that has not seen it.
-struct Predicted {
-    /// Measured less predicted, each number in its own unit.
-    error: DVector<f64>,
-    /// Logarithm of the predictive density, up to a constant of the measurements.
-    log_density: f64,
-}
-
-impl Predicted {
-    /// `conditions` that were held out, by `fitted`, under the noise of `noisy`.
-    fn unseen(
-        bench: &Bench<'_>,
-        noisy: &Fitted,
-        fitted: &Fitted,
-        conditions: &[usize],
-    ) -> Result<Vec<Attempt>, BenchError> {
-        let parameters = fitted.fit.free_covariance();
-        let one = |condition: usize| -> Result<Self, BenchError> {
-            let conditions = [condition];
-            let weights = bench.weights(&noisy.fit.point, &noisy.noise, &conditions)?;
-            let data = Data { conditions: &conditions, ..bench.data(&weights) };
-            let rows = data.measured();
-            let residual = data.residual(&fitted.fit.point)?.rows(0, rows).into_owned();
-            let jacobian = data.jacobian(&fitted.fit)?.rows(0, rows).into_owned();
-            let log_density = density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
-            Ok(Self { error: weights[0].colour_without_angle(&residual), log_density })
-        };
-        let attempt = |&condition: &usize| match one(condition) {
-            Ok(predicted) => Ok(Ok(predicted)),
-            Err(BenchError::Predict(error)) => Ok(Err(error.why)),
-            Err(other) => Err(other),
-        };
-        conditions.iter().map(attempt).collect()
-    }
-
-    /// Every condition that was fitted to, by one Gauss-Newton step without it from the fit of
-    /// `fitted`, under the noise of `noisy`, or by a fit where that step goes far; none where one alone fixes a parameter.
-    fn left_out(
-        bench: &Bench<'_>,
-        noisy: &Fitted,
-        fitted: &Fitted,
-    ) -> Result<Vec<Attempt>, BenchError> {
-        let data = bench.data(&noisy.weights);
-        let residual = data.residual(&fitted.fit.point)?;
-        let jacobian = data.jacobian(&fitted.fit)?;
-        let (all, pull) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&residual));
-        let mut predicted = Vec::with_capacity(noisy.weights.len());
-        let mut start = 0;
-        for (&condition, weight) in bench.observed.fit.iter().zip(&noisy.weights) {
-            let rows = bench.observed.conditions[condition].mean.len();
-            let own = residual.rows(start, rows).into_owned();
-            let slope = jacobian.rows(start, rows).into_owned();
-            start += rows;
-            if noisy.weights.len() == 1 {
-                predicted.push(Err("no other condition is fitted to".to_owned()));
-                continue;
-            }
-            let Some(others) = told_apart(&all - slope.tr_mul(&slope), &all) else {
-                predicted.push(Err("it alone fixes a parameter".to_owned()));
-                continue;
-            };
-            let step = others.solve(&(&pull - slope.tr_mul(&own)));
-            let stepped = &own - &slope * step;
-            let residual = match stepped.norm() > FAR * own.norm() {
-                true => refitted_without(bench, noisy, fitted, condition).unwrap_or(stepped),
-                false => stepped,
-            };
-            let log_density = density(&residual, &(&slope * others.solve(&slope.transpose())));
-            predicted.push(Ok(Self { error: weight.colour_without_angle(&residual), log_density }));
-        }
-        Ok(predicted)
-    }
-}
-
-/// What is left of `condition`, whitened, by a fit to all others from that of `fitted`.
-fn refitted_without(
-    bench: &Bench<'_>,
-    noisy: &Fitted,
-    fitted: &Fitted,
-    condition: usize,
-) -> Option<DVector<f64>> {
-    let (mut conditions, mut weights) = (Vec::new(), Vec::new());
-    let mut own = None;
-    for (&other, weight) in bench.observed.fit.iter().zip(&noisy.weights) {
-        if other == condition {
-            own = Some(weight);
-        } else {
-            conditions.push(other);
-            weights.push(weight.clone());
-        }
-    }
-    let others = Data { conditions: &conditions, weights: &weights, ..bench.data(&noisy.weights) };
-    let point = others.fit(&fitted.fit.point).ok()?.point;
-    let weight = own?;
-    let predicted = weight.predict(&point, bench.forward, condition).ok()?;
-    Some(weight.whiten(&(&bench.observed.conditions[condition].mean - predicted)))
-}
-
-/// The factor of the information `others` on the parameters, if it fixes every combination that `all` fixes: differences
-/// of rounding fix nothing.
-fn told_apart(others: DMatrix<f64>, all: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
-    let scale = all.diagonal().map(f64::sqrt);
-    let n = others.nrows();
-    let share = DMatrix::from_fn(n, n, |i, j| others[(i, j)] / (scale[i] * scale[j]));
-    let pivots = Cholesky::new(share)?.l_dirty().diagonal();
-    let is_fixed = pivots.iter().all(|pivot| pivot * pivot > ALONE);
-    is_fixed.then(|| Cholesky::new(others)).flatten()
-}
-
-/// Logarithm of the normal density of a whitened `residual`, whose prediction has covariance
-/// `predicted` beside the noise, up to a constant.
-fn density(residual: &DVector<f64>, predicted: &DMatrix<f64>) -> f64 {
-    let covariance = DMatrix::identity(residual.len(), residual.len()) + predicted;
-    // One plus a square is always positive definite; if not finite, nothing is known.
-    Cholesky::new(covariance).map_or(f64::NEG_INFINITY, |factor| {
-        -0.5 * (residual.dot(&factor.solve(residual)) + log_determinant(&factor))
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::test_sets::{condition, scalar_run, set};
-    use measurements::Kind;
-
-    #[test]
-    fn a_condition_that_only_one_model_predicts_is_left_out_of_both_and_reported() {
-        let speeds = [1.0, 1.5, 2.0];
-        let runs = (0..3).map(|at| scalar_run(at, [Some(0.1), None, None])).collect();
-        let conditions = speeds.map(|speed| condition(speed, 90.0)).into();
-        let observed = Observed::of(&set(Kind::Scalar, conditions, runs));
-        let predicted = |log_density| Ok(Predicted { error: DVector::zeros(1), log_density });
-        let fails = || Err("it never stops".to_owned());
-        let before = vec![predicted(-1.0), predicted(-20.0), fails()];
-        let after = vec![predicted(-2.0), fails(), fails()];
-        let (both, others) = in_both(&observed, &[0, 1, 2], before, after);
-        let kept: Vec<_> =
-            both.iter().map(|(c, b, a)| (*c, b.log_density, a.log_density)).collect();
-        assert_eq!(kept, [(0, -1.0, -2.0)]);
-        let left: Vec<_> = others.iter().map(|one| (one.condition.as_str(), one.by)).collect();
-        assert_eq!(left, [("1.5 m/s at 90", Fails::After), ("2 m/s at 90", Fails::Both)]);
-    }
-
-    #[test]
-    fn what_is_left_by_rounding_fixes_no_parameter() {
-        // The second column differs from the first in the last row alone.
-        let rows = DMatrix::from_row_slice(3, 2, &[3.0, 3.0, 7.0, 7.0, 2.0, 1.0]);
-        let all = rows.tr_mul(&rows);
-        let without = |row: usize| {
-            let slope = rows.rows(row, 1).into_owned();
-            &all - slope.tr_mul(&slope)
-        };
-        assert!(told_apart(without(0), &all).is_some());
-        let mut rounded = without(2);
-        rounded[(1, 1)] *= 1.0 + 1e-13;
-        assert!(told_apart(rounded, &all).is_none());
-    }
-
-    fn held_out(judged: usize, by: Option<Fails>, gain: f64) -> HeldOut {
-        let error = (judged > 0).then_some(1e-3);
-        let one = |by| NotPredicted { condition: "a".into(), by, why: "it never stops".into() };
-        HeldOut {
-            before: error,
-            after: error,
-            noise_floor: error,
-            explained: None,
-            unit: Unit::Position,
-            conditions: LeftOut::Holdout,
-            conditions_judged: judged,
-            not_predicted: by.map(one).into_iter().collect(),
-            ratio_at_most: None,
-            log_density_gain: gain,
-        }
-    }
-
-    #[test]
-    fn what_an_effect_cannot_predict_is_no_gain_of_it() {
-        let doubt = |judged, by, gain| held_out(judged, by, gain).doubt();
-        assert_eq!(doubt(2, None, 4.0), None);
-        assert_eq!(doubt(2, Some(Fails::Before), 4.0), None);
-        let after = doubt(2, Some(Fails::After), 4.0);
-        assert_eq!(after, Some(StrengthReason::ConditionsNotPredicted));
-        assert_eq!(doubt(0, Some(Fails::Both), 0.0), Some(StrengthReason::HeldOutNotJudged));
-        assert_eq!(doubt(2, None, 0.0), Some(StrengthReason::HeldOutNoBetter));
-        assert!(!held_out(0, None, -9.0).refutes(), "no error is larger than none");
-    }
 }

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use measurements::MeasurementSet;
 
 use crate::added_force::added_forces;
-use crate::bench::{Bench, BenchError, Fitted, MOST_BETWEEN};
 use crate::doubts::{doubts, evidence, no_repeats};
 use crate::fit::Fit;
+use crate::fit_problem::{FitError, FitProblem, Fitted, MOST_BETWEEN};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
 use crate::forward::ParameterKind;
@@ -50,7 +50,7 @@ const DOUBTFUL: f64 = 0.1;
 
 /// All that a verdict is made of.
 pub(crate) struct Judge<'a> {
-    pub(crate) bench: &'a Bench<'a>,
+    pub(crate) problem: &'a FitProblem<'a>,
     pub(crate) seed: u64,
     /// The model as it is, under its own noise.
     pub(crate) baseline: Fitted,
@@ -87,8 +87,8 @@ pub(crate) struct Grounds {
 }
 
 impl Judge<'_> {
-    pub(crate) fn verdict(self) -> Result<Diagnosis, BenchError> {
-        let p_lof = lack_of_fit(self.bench, &self.baseline, self.seed)?;
+    pub(crate) fn verdict(self) -> Result<Diagnosis, FitError> {
+        let p_lof = lack_of_fit(self.problem, &self.baseline, self.seed)?;
         let grounds = Grounds { p_lof, ..Grounds::default() };
         match self.ranking.p > ALPHA {
             true if adequate(p_lof) => self.explained(grounds),
@@ -98,45 +98,49 @@ impl Judge<'_> {
     }
 
     /// The verdict where no effect helps, and none is needed.
-    fn explained(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
+    fn explained(&self, grounds: Grounds) -> Result<Diagnosis, FitError> {
         if let Some(why) = no_repeats(&self.baseline) {
-            return Ok(cannot_tell(self.bench, why));
+            return Ok(cannot_tell(self.problem, why));
         }
         let hint = self.differ_by_a_force()?;
         let verdict = match hint {
             Some(_) => Verdict::NoneOfTheCandidates,
-            None => nothing(self.bench, &self.baseline),
+            None => nothing(self.problem, &self.baseline),
         };
         let hint = hint.unwrap_or_default();
         self.diagnosis(verdict, &self.baseline, Grounds { hint, ..grounds })
     }
 
     /// The verdict where no effect helps a model that does not explain the data.
-    fn rejected(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
-        if let Some(wide) = self.bench.with_sessions_of_their_own(&self.baseline)?
-            && adequate(lack_of_fit(self.bench, &wide, self.seed)?)
+    fn rejected(&self, grounds: Grounds) -> Result<Diagnosis, FitError> {
+        if let Some(wide) = self.problem.with_sessions_of_their_own(&self.baseline)?
+            && adequate(lack_of_fit(self.problem, &wide, self.seed)?)
         {
             let hint = "conditions differ by more than their repeats show, as beds do that are poured anew; if they \
                         were, say which runs are of one pouring in a column `session` of the runs";
             let hint = hint.to_owned();
-            return self.diagnosis(nothing(self.bench, &wide), &wide, Grounds { hint, ..grounds });
+            return self.diagnosis(
+                nothing(self.problem, &wide),
+                &wide,
+                Grounds { hint, ..grounds },
+            );
         }
         let hint = "the model is rejected, and no listed effect helps".to_owned();
         self.refuse(Grounds { hint, ..grounds })
     }
 
     /// The verdict where the best effect helps by more than chance.
-    fn helped(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
-        let leader = without_width(self.bench, &self.leader)?;
-        let p_leader = lack_of_fit(self.bench, &leader, self.seed)?;
+    fn helped(&self, grounds: Grounds) -> Result<Diagnosis, FitError> {
+        let leader = without_width(self.problem, &self.leader)?;
+        let p_leader = lack_of_fit(self.problem, &leader, self.seed)?;
         let leader = self.name(self.ranking.scores[0].candidate());
         if p_leader.is_none() {
             let why = format!("with {leader} as much is free as was measured: nothing judges it");
-            return Ok(cannot_tell(self.bench, why));
+            return Ok(cannot_tell(self.problem, why));
         }
         let grounds = Grounds { p_lof_with: p_leader, ..grounds };
-        let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
-        let is_judged = self.bench.forward.is_judged_by_held_out();
+        let held_out = HeldOut::of(self.problem, &self.weighed, &self.leader)?;
+        let is_judged = self.problem.forward.is_judged_by_held_out();
         // Real effects do not follow formulas exactly: a lack of fit counts only if held-out conditions show it.
         let is_explained = adequate(p_leader) || (is_judged && held_out.is_within_noise());
         // Grains are asked again, by impacts on fresh beds: there, two are tried only where one is not enough.
@@ -196,8 +200,9 @@ impl Judge<'_> {
 
     /// The hint for conditions that differ by more than their repeats show, if a force of some form explains the differences
     /// far better than beds that are poured anew, which differ at random.
-    fn differ_by_a_force(&self) -> Result<Option<String>, BenchError> {
-        if self.baseline.noise.sessions.gain < SEEN || !self.bench.forward.is_judged_by_held_out() {
+    fn differ_by_a_force(&self) -> Result<Option<String>, FitError> {
+        if self.baseline.noise.sessions.gain < SEEN || !self.problem.forward.is_judged_by_held_out()
+        {
             return Ok(None);
         }
         let odds = self.of_any_force()?.filter(|odds| *odds >= MORE_THAN_SESSIONS);
@@ -217,7 +222,7 @@ impl Judge<'_> {
     /// Whether the best effect is only the nearest of the listed effects: a force of any form is about as likely. The odds have
     /// to be larger if the effect leaves a part of the error, or if few conditions show it. Otherwise, effects that are not
     /// told apart need no odds, since they are several forms themselves, nor does an effect that takes most of a clear error.
-    fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, BenchError> {
+    fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, FitError> {
         let is_doubtful =
             p.is_some_and(|p| p <= DOUBTFUL) || held_out.leaves_more_than_noise() == Some(true);
         let leaves = held_out.leaves_a_part() && is_doubtful;
@@ -229,8 +234,8 @@ impl Judge<'_> {
     }
 
     /// Whether the effects of `fitted` exceed a force of any form by less than `least` in log odds.
-    fn is_no_likelier(&self, fitted: &Fitted, least: f64) -> Result<bool, BenchError> {
-        if !self.bench.forward.is_judged_by_held_out() {
+    fn is_no_likelier(&self, fitted: &Fitted, least: f64) -> Result<bool, FitError> {
+        if !self.problem.forward.is_judged_by_held_out() {
             return Ok(false);
         }
         let of_effects = 0.5 * (self.baseline.deviance() - fitted.deviance());
@@ -238,16 +243,16 @@ impl Judge<'_> {
     }
 
     /// Log odds of a force of any form against none; `None` where that is not known.
-    fn of_any_force(&self) -> Result<Option<f64>, BenchError> {
+    fn of_any_force(&self) -> Result<Option<f64>, FitError> {
         if let Some(known) = self.of_any_force.get() {
             return Ok(*known);
         }
-        let odds = log_odds(self.bench, &self.baseline)?;
+        let odds = log_odds(self.problem, &self.baseline)?;
         Ok(*self.of_any_force.get_or_init(|| odds))
     }
 
     /// The verdict on the best effect alone, with which the model explains what was fitted.
-    fn one(&self, grounds: Grounds, held_out: HeldOut) -> Result<Diagnosis, BenchError> {
+    fn one(&self, grounds: Grounds, held_out: HeldOut) -> Result<Diagnosis, FitError> {
         if held_out.refutes() {
             let leader = self.name(self.ranking.scores[0].candidate());
             let hint = format!(
@@ -268,10 +273,10 @@ impl Judge<'_> {
 
     /// That the effects of `fitted` explain the data only with an error of the apparatus that nobody's has, in a sentence.
     fn needs_an_implausible_apparatus(&self, fitted: &Fitted) -> Option<String> {
-        if !self.bench.forward.is_judged_by_held_out() {
+        if !self.problem.forward.is_judged_by_held_out() {
             return None;
         }
-        let all = ApparatusError::all(self.bench.forward, fitted);
+        let all = ApparatusError::all(self.problem.forward, fitted);
         let error = all.iter().find(|error| error.is_implausible())?;
         let times = error.value.abs() / error.prior_sigma?;
         let effects = fitted.fit.point.effects.iter().map(|(effect, _)| self.name(*effect));
@@ -285,15 +290,15 @@ impl Judge<'_> {
 
     /// The two effects that explain the data, if there are two; where one does (`is_explained`), two have to be far more
     /// likely.
-    fn two(&self, is_explained: bool) -> Result<Option<Two>, BenchError> {
-        let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
+    fn two(&self, is_explained: bool) -> Result<Option<Two>, FitError> {
+        let pair = best_pair(self.problem, &self.weighed, &self.ranking, self.seed)?;
         let Some(pair) = pair.filter(|pair| pair.p <= ALPHA) else { return Ok(None) };
         if is_explained && self.leader.deviance() - pair.fitted.deviance() < LIKELIER {
             return Ok(None);
         }
-        let narrow = without_width(self.bench, &pair.fitted)?;
-        let p_lof = lack_of_fit(self.bench, &narrow, self.seed)?;
-        let held_out = HeldOut::of(self.bench, &self.weighed, &pair.fitted)?;
+        let narrow = without_width(self.problem, &pair.fitted)?;
+        let p_lof = lack_of_fit(self.problem, &narrow, self.seed)?;
+        let held_out = HeldOut::of(self.problem, &self.weighed, &pair.fitted)?;
         // Two effects fit what one condition shows more easily than one does.
         let stands = adequate(p_lof)
             && self.needs_an_implausible_apparatus(&pair.fitted).is_none()
@@ -306,10 +311,10 @@ impl Judge<'_> {
 
     /// The verdict none-of-the-candidates, or below-noise if the model misses held-out conditions by little more than
     /// their noise.
-    fn refuse(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
-        let held_out = HeldOut::of(self.bench, &self.baseline, &self.baseline)?;
+    fn refuse(&self, grounds: Grounds) -> Result<Diagnosis, FitError> {
+        let held_out = HeldOut::of(self.problem, &self.baseline, &self.baseline)?;
         let is_small = held_out.is_above_noise() == Some(false);
-        let verdict = match is_small && self.bench.forward.is_judged_by_held_out() {
+        let verdict = match is_small && self.problem.forward.is_judged_by_held_out() {
             true => Verdict::BelowNoise,
             false => Verdict::NoneOfTheCandidates,
         };
@@ -320,7 +325,7 @@ impl Judge<'_> {
     /// The reason why an effect with this error on held-out conditions is too small to be named; `None` for an effect that
     /// is large enough.
     fn too_small(&self, held_out: &HeldOut) -> Option<String> {
-        if !self.bench.forward.is_judged_by_held_out() {
+        if !self.problem.forward.is_judged_by_held_out() {
             return None;
         }
         let best = &self.ranking.scores[0];
@@ -333,8 +338,8 @@ impl Judge<'_> {
         verdict: Verdict,
         proposed: &Fitted,
         Grounds { p_lof, p_lof_with, hint, held_out }: Grounds,
-    ) -> Result<Diagnosis, BenchError> {
-        let Self { bench, ranking, .. } = self;
+    ) -> Result<Diagnosis, FitError> {
+        let Self { problem, ranking, .. } = self;
         let leaders: Vec<String> =
             self.alike.iter().map(|&place| self.name(ranking.scores[place].candidate())).collect();
         let not_separable = match verdict {
@@ -345,18 +350,18 @@ impl Judge<'_> {
             Verdict::NoneOfTheCandidates => &self.baseline,
             _ => proposed,
         };
-        let unexplained = unexplained(bench, verdict, left_by, (hint, self.seed))?;
+        let unexplained = unexplained(problem, verdict, left_by, (hint, self.seed))?;
         let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
-        let listed = as_listed(bench, proposed)?;
+        let listed = as_listed(problem, proposed)?;
         let amplitudes: Vec<Amplitude> = listed
             .point
             .effects
             .iter()
             .enumerate()
-            .zip(added_forces(bench, &listed))
+            .zip(added_forces(problem, &listed))
             .map(|((at, &(index, q)), force)| {
                 let se = listed.standard_error(listed.point.parameters.len() + at);
-                let candidate = &bench.forward.candidates()[index];
+                let candidate = &problem.forward.candidates()[index];
                 let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
                 let interval_95 = candidate.interval_95(q, se);
                 let form = candidate.form.iter().copied().collect();
@@ -366,7 +371,7 @@ impl Judge<'_> {
             .collect();
         let held_out = match held_out {
             Some(known) => known,
-            None => HeldOut::of(bench, before, proposed)?,
+            None => HeldOut::of(problem, before, proposed)?,
         };
         // A fit that misses the data says nothing of the apparatus.
         let explains =
@@ -375,37 +380,37 @@ impl Judge<'_> {
             errors.iter_mut().for_each(|error| error.named &= explains);
             errors
         };
-        let mut strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
+        let mut strength_reasons = doubts(problem, proposed, &amplitudes, &held_out);
         if verdict.is_explained() && held_out.is_above_noise() == Some(true) {
             strength_reasons.push(StrengthReason::HeldOutAboveNoise);
         }
         Ok(Diagnosis {
             verdict,
             strength: Strength::of(&strength_reasons),
-            probability: match bench.forward.is_judged_by_held_out() {
+            probability: match problem.forward.is_judged_by_held_out() {
                 true => of_benchmark(verdict),
                 false => None,
             },
-            evidence: evidence(bench, proposed),
-            warnings: warnings(bench, proposed, &amplitudes),
+            evidence: evidence(problem, proposed),
+            warnings: warnings(problem, proposed, &amplitudes),
             strength_reasons,
             effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
             not_separable,
             leaders,
-            ranking: ranked(bench, Some(ranking)),
+            ranking: ranked(problem, Some(ranking)),
             p1: (!ranking.scores.is_empty()).then_some(ranking.p),
             p_lof,
             p_lof_with,
-            noise: proposed.noise.to_json(bench.set, bench.forward),
+            noise: proposed.noise.to_json(problem.set, problem.forward),
             holdout: Some(held_out),
             unexplained,
             missing_force: None,
-            apparatus: found(ApparatusError::all(bench.forward, proposed)),
-            preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
+            apparatus: found(ApparatusError::all(problem.forward, proposed)),
+            preparation: ApparatusError::of_preparation(problem.forward, &proposed.fit),
             next: Vec::new(),
-            measured: measured(bench.set),
+            measured: measured(problem.set),
             after: None,
-            parameters: parameters(bench.forward, &listed),
+            parameters: parameters(problem.forward, &listed),
             amplitudes,
             amplitude_correlation: correlation(&listed),
             baseline: Some(self.baseline.clone()),
@@ -414,7 +419,7 @@ impl Judge<'_> {
     }
 
     fn name(&self, candidate: usize) -> String {
-        self.bench.forward.candidates()[candidate].id.clone()
+        self.problem.forward.candidates()[candidate].id.clone()
     }
 }
 
@@ -437,11 +442,11 @@ fn explains_a_part(leader: &str, held_out: &HeldOut) -> String {
 }
 
 /// The verdict without an effect: it depends on what of the preparation and of the apparatus `fitted` names.
-pub(crate) fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
+pub(crate) fn nothing(problem: &FitProblem<'_>, fitted: &Fitted) -> Verdict {
     let is_named = |errors: Vec<ApparatusError>| errors.iter().any(|error| error.named);
-    if is_named(ApparatusError::of_preparation(bench.forward, &fitted.fit)) {
+    if is_named(ApparatusError::of_preparation(problem.forward, &fitted.fit)) {
         Verdict::ExplainedByPreparation
-    } else if is_named(ApparatusError::all(bench.forward, fitted)) {
+    } else if is_named(ApparatusError::all(problem.forward, fitted)) {
         Verdict::ExplainedByApparatus
     } else {
         Verdict::NothingDetected
@@ -449,7 +454,7 @@ pub(crate) fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
 }
 
 /// What was left aside of the measurements, and what is unusual of what is named.
-fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> Vec<String> {
+fn warnings(problem: &FitProblem<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> Vec<String> {
     let between = proposed.noise.sessions;
     let differ = (between.gain >= SEEN).then(|| {
         format!(
@@ -465,17 +470,17 @@ fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> V
     let unusual = unusual.map(|amplitude| {
         format!("{} of {:.4} is outside of its usual range", amplitude.id, amplitude.q)
     });
-    bench.observed.notes.iter().cloned().chain(differ).chain(unusual).collect()
+    problem.observed.notes.iter().cloned().chain(differ).chain(unusual).collect()
 }
 
 /// What `fitted`, which is what `verdict` says, leaves over, and what to try where nothing listed helps.
 pub(crate) fn unexplained(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     verdict: Verdict,
     fitted: &Fitted,
     (hint, seed): (String, u64),
-) -> Result<Unexplained, BenchError> {
-    let remaining = ForceErrors::of(bench, fitted, seed)?;
+) -> Result<Unexplained, FitError> {
+    let remaining = ForceErrors::of(problem, fitted, seed)?;
     let depends_on = match verdict {
         Verdict::NoneOfTheCandidates | Verdict::Pair => remaining.depends_on(),
         _ => remaining.drifts(),
@@ -500,24 +505,27 @@ fn correlation(fit: &Fit) -> Option<f64> {
 
 /// `proposed` with effects of exactly the form that is listed, as a model has them, if the data ask for no other one; else as
 /// it is. Beside a form that nothing fixes, an amplitude is one of many that give the same force where there are data.
-fn as_listed(bench: &Bench<'_>, proposed: &Fitted) -> Result<Fit, BenchError> {
+fn as_listed(problem: &FitProblem<'_>, proposed: &Fitted) -> Result<Fit, FitError> {
     if proposed.fit.point.effects.is_empty() {
         return Ok(proposed.fit.clone());
     }
-    let parameters = bench.forward.parameters();
+    let parameters = problem.forward.parameters();
     let mut start = proposed.fit.point.clone();
     let of_forms = start.parameters.iter_mut().zip(parameters);
     let forms = of_forms.filter(|(_, one)| one.kind == ParameterKind::Form);
     if forms.map(|(value, one)| *value = one.start).count() == 0 {
         return Ok(proposed.fit.clone());
     }
-    let listed = bench.data(&proposed.weights).fit_as_listed(&start)?;
+    let listed = problem.data(&proposed.weights).fit_as_listed(&start)?;
     let is_asked_for = listed.chi2 - proposed.fit.chi2 > FORM;
     Ok(if is_asked_for { proposed.fit.clone() } else { listed })
 }
 
-pub(crate) fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
-    Diagnosis { measured: measured(bench.set), ..Diagnosis::cannot_tell(ranked(bench, None), why) }
+pub(crate) fn cannot_tell(problem: &FitProblem<'_>, why: String) -> Diagnosis {
+    Diagnosis {
+        measured: measured(problem.set),
+        ..Diagnosis::cannot_tell(ranked(problem, None), why)
+    }
 }
 
 /// The names of all runs of `set`, by condition.
@@ -531,10 +539,10 @@ fn measured(set: &MeasurementSet) -> BTreeMap<String, Vec<String>> {
 }
 
 /// `fitted` where conditions differ by no more than their runs explain: a misfit is judged by those.
-fn without_width(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, BenchError> {
+fn without_width(problem: &FitProblem<'_>, fitted: &Fitted) -> Result<Fitted, FitError> {
     let noise = Noise { between: 0.0, ..fitted.noise };
     match fitted.noise.between > 0.0 {
-        true => bench.fit_once(&fitted.fit.point, &noise),
+        true => problem.fit_once(&fitted.fit.point, &noise),
         false => Ok(fitted.clone()),
     }
 }

@@ -11,8 +11,8 @@
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::directions::Directions;
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::noise::NoiseSource;
 use crate::observable::Layout;
 use crate::redraw::Redraw;
@@ -39,11 +39,11 @@ const GRAINS: f64 = 4.0;
 /// # Errors
 /// If the model fails.
 pub fn lack_of_fit(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     fitted: &Fitted,
     seed: u64,
-) -> Result<Option<f64>, BenchError> {
-    let observed = bench.observed;
+) -> Result<Option<f64>, FitError> {
+    let observed = problem.observed;
     let whole = &fitted.fit.residual;
     if whole.len() <= fitted.fit.n_free() {
         return Ok(None);
@@ -53,7 +53,7 @@ pub fn lack_of_fit(
         return Ok(at_least(fitted.fit.chi2, freedom));
     }
     let reach = observed.fit.iter().fold(0.0_f64, |r, &c| r.max(observed.conditions[c].reach));
-    let grain = bench.set.coarsest_grains();
+    let grain = problem.set.coarsest_grains();
     let (least, most) = NODES;
     let nodes = ((reach / SPACING.max(GRAINS * grain)).ceil() as usize + 1).clamp(least, most);
 
@@ -61,18 +61,18 @@ pub fn lack_of_fit(
     for (&condition, weight) in observed.fit.iter().zip(&fitted.weights) {
         let response = |direction, nodes| {
             let point = &fitted.fit.point;
-            force_response(point, bench.forward, condition, direction, (nodes, reach))
+            force_response(point, problem.forward, condition, direction, (nodes, reach))
         };
         let along = response(Direction::Along, nodes)?;
         let sideways = response(Direction::Sideways, nodes.div_ceil(2))?;
         let craters = crater_sizes(&observed.conditions[condition].layout);
         looked.push([along, sideways, craters].map(|change| weight.whiten_columns(&change)));
     }
-    let measured = bench.data(&fitted.weights).measured();
+    let measured = problem.data(&fitted.weights).measured();
     let residual = whole.rows(0, measured).into_owned();
-    let imitated = imitated(bench, fitted);
-    let directions = Directions::new(bench, &imitated, &looked);
-    let mut noise = Redraw::new(bench, fitted, &directions, seed);
+    let imitated = imitated(problem, fitted);
+    let directions = Directions::new(problem, &imitated, &looked);
+    let mut noise = Redraw::new(problem, fitted, &directions, seed);
     let drawn: Vec<Vec<f64>> = (0..DRAWS).map(|_| directions.sizes(&noise.draw())).collect();
     let measured = directions.sizes(&directions.of(&residual));
     Ok(Some(smallest_probability(&measured, &drawn)))
@@ -93,9 +93,9 @@ pub(crate) fn at_least(chi2: f64, freedom: f64) -> Option<f64> {
 
 /// Whitened directions that do not count as lack of fit: those of the free parameters and amplitudes of `fitted`. A
 /// parameter that its prior determines is left out, because the fit already uses all the freedom that the prior gives.
-fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> DMatrix<f64> {
-    let measured = bench.data(&fitted.weights).measured();
-    let parameters = bench.forward.parameters();
+fn imitated(problem: &FitProblem<'_>, fitted: &Fitted) -> DMatrix<f64> {
+    let measured = problem.data(&fitted.weights).measured();
+    let parameters = problem.forward.parameters();
     let is_free = |unknown: usize| {
         let prior = parameters.get(unknown).and_then(|parameter| parameter.prior);
         let known = fitted.fit.standard_error(unknown).unwrap_or(f64::INFINITY);

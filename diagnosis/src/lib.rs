@@ -6,7 +6,7 @@
 //!
 //! 1. [`observed`] makes vectors of the runs, one [`observable::Layout`] per condition;
 //! 2. [`sensitivity`], [`noise`] and [`weights`] learn from repeats how much they scatter;
-//! 3. [`mod@bench`] fits a model under that noise, by [`fit`];
+//! 3. [`mod@fit_problem`] fits a model under that noise, by [`fit`];
 //! 4. [`compare::compare`] says how wrong each revision of a model is and where
 //!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]), and [`where_it_fails`] writes that
 //!    as tables and [`mod@picture`]s;
@@ -21,10 +21,9 @@
 pub mod added_force;
 pub mod apparatus;
 pub mod beds;
-pub mod bench;
 pub mod between;
+mod broyden;
 pub mod calibrate;
-mod chord;
 pub mod compare;
 pub mod covariate;
 mod curves;
@@ -37,6 +36,7 @@ pub mod error_unit;
 pub mod errors;
 pub mod field;
 pub mod fit;
+pub mod fit_problem;
 pub mod fitted_parameters;
 pub mod force_error;
 pub mod forward;

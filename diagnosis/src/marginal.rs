@@ -12,7 +12,7 @@ use argmin::solver::brent::BrentOpt;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand_pcg::Pcg64;
 
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::forward::{Candidate, PredictError};
 use crate::noise::{Noise, log_determinant};
 use crate::random::{Purpose, normal, scale_of_noise, stream};
@@ -80,19 +80,19 @@ impl Marginals {
 /// # Errors
 /// If the model cannot be weighed as it is.
 pub(crate) fn marginals(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     fitted: &Fitted,
     candidates: &[usize],
     seed: u64,
-) -> Result<Option<Marginals>, BenchError> {
-    let Some(problem) = Problem::of(bench, fitted)? else { return Ok(None) };
+) -> Result<Option<Marginals>, FitError> {
+    let Some(problem) = Problem::of(problem, fitted)? else { return Ok(None) };
     let (bare, between) = problem.profiled(&problem.changed(&[])?, &[])?;
     let mut all = Marginals { best: Vec::new(), failed: Vec::new(), between, p: 1.0 };
     for &candidate in candidates {
         let profile = Profile { problem: &problem, candidate };
         match profile.best(bare) {
             Ok(best) => all.best.push(best),
-            Err(BenchError::Predict(why)) => all.failed.push((candidate, why)),
+            Err(FitError::Predict(why)) => all.failed.push((candidate, why)),
             Err(other) => return Err(other),
         }
     }
@@ -106,14 +106,14 @@ pub(crate) fn marginals(
 ///
 /// # Errors
 /// If the model cannot be weighed.
-pub(crate) fn between(bench: &Bench<'_>, fitted: &Fitted) -> Result<f64, BenchError> {
-    let Some(problem) = Problem::of(bench, fitted)? else { return Ok(0.0) };
+pub(crate) fn between(problem: &FitProblem<'_>, fitted: &Fitted) -> Result<f64, FitError> {
+    let Some(problem) = Problem::of(problem, fitted)? else { return Ok(0.0) };
     Ok(problem.profiled(&problem.changed(&[])?, &[])?.1)
 }
 
 /// Measured means beside a model whose parameters act linearly: an error of the apparatus, a change of the preparation.
 struct Problem<'a> {
-    bench: &'a Bench<'a>,
+    problem: &'a FitProblem<'a>,
     fitted: &'a Fitted,
     /// Covariance of the measured mean of each condition.
     measured: Vec<DMatrix<f64>>,
@@ -136,28 +136,29 @@ struct Cell {
 
 impl<'a> Problem<'a> {
     /// `None` for a model without a covariance of its own.
-    fn of(bench: &'a Bench<'a>, fitted: &'a Fitted) -> Result<Option<Self>, BenchError> {
-        let fit = &bench.observed.fit;
-        let has_own = fit.first().is_some_and(|&c| bench.forward.own_covariance(c, &[]).is_some());
+    fn of(problem: &'a FitProblem<'a>, fitted: &'a Fitted) -> Result<Option<Self>, FitError> {
+        let fit = &problem.observed.fit;
+        let has_own =
+            fit.first().is_some_and(|&c| problem.forward.own_covariance(c, &[]).is_some());
         if !has_own {
             return Ok(None);
         }
         let point = &fitted.fit.point;
-        let parameters = bench.forward.parameters();
+        let parameters = problem.forward.parameters();
         let (mut measured, mut columns) = (Vec::new(), Vec::new());
         for &condition in fit {
-            let observed = &bench.observed.conditions[condition];
-            let sensitivity = bench.sensitivity(point, condition)?;
+            let observed = &problem.observed.conditions[condition];
+            let sensitivity = problem.sensitivity(point, condition)?;
             let runs = observed.runs.len().max(1) as f64;
             measured.push(fitted.noise.covariance(observed, &sensitivity) / runs);
-            let base = point.predict(bench.forward, condition)?;
+            let base = point.predict(problem.forward, condition)?;
             let mut slopes = DMatrix::zeros(base.len(), parameters.len());
             for (at, parameter) in parameters.iter().enumerate() {
                 let range = (parameter.max - parameter.min).min(1.0);
                 let step = parameter.prior.map_or(1e-2 * range, |prior| prior.sigma);
                 let mut moved = point.clone();
                 moved.parameters[at] += step;
-                let slope = (moved.predict(bench.forward, condition)? - &base) / step;
+                let slope = (moved.predict(problem.forward, condition)? - &base) / step;
                 slopes.set_column(at, &slope);
             }
             columns.push(slopes);
@@ -167,7 +168,7 @@ impl<'a> Problem<'a> {
         let pull = priors().map(|(one, value)| one.prior.map_or(0.0, |prior| prior.mean - value));
         let (precision, pull) = (precision.collect::<Vec<_>>(), pull.collect::<Vec<_>>());
         Ok(Some(Self {
-            bench,
+            problem,
             fitted,
             measured,
             columns,
@@ -183,24 +184,24 @@ impl<'a> Problem<'a> {
             parameters: self.fitted.fit.point.parameters.clone(),
         };
         let one = |&condition: &usize| {
-            let mean = &self.bench.observed.conditions[condition].mean;
-            Ok(mean - point.predict(self.bench.forward, condition)?)
+            let mean = &self.problem.observed.conditions[condition].mean;
+            Ok(mean - point.predict(self.problem.forward, condition)?)
         };
-        self.bench.observed.fit.iter().map(one).collect()
+        self.problem.observed.fit.iter().map(one).collect()
     }
 
     /// Weights with `effects`, where conditions differ by `between`.
-    fn cell(&self, effects: &[(usize, f64)], between: f64) -> Result<Cell, BenchError> {
+    fn cell(&self, effects: &[(usize, f64)], between: f64) -> Result<Cell, FitError> {
         let noise = Noise { between, ..self.fitted.noise };
         let (mut factors, mut columns) = (Vec::new(), Vec::new());
         let n = self.precision.len();
         let (mut inner, mut log) = (DMatrix::from_diagonal(&self.precision), 0.0);
-        let each = self.bench.observed.fit.iter().zip(&self.measured).zip(&self.columns);
+        let each = self.problem.observed.fit.iter().zip(&self.measured).zip(&self.columns);
         for ((&condition, measured), slopes) in each {
-            let own = self.bench.own_covariance(condition, effects, &noise);
+            let own = self.problem.own_covariance(condition, effects, &noise);
             let whole = own.map_or_else(|| measured.clone(), |own| own + measured);
-            let factor = Cholesky::new(whole).ok_or_else(|| BenchError::Singular {
-                id: self.bench.observed.conditions[condition].id.clone(),
+            let factor = Cholesky::new(whole).ok_or_else(|| FitError::Singular {
+                id: self.problem.observed.conditions[condition].id.clone(),
             })?;
             let mut white = slopes.clone();
             // The diagonal of a Cholesky factor is positive, so there is a solution.
@@ -213,7 +214,7 @@ impl<'a> Problem<'a> {
         let ridge = RIDGE * inner.diagonal().amax().max(1.0);
         inner += DMatrix::identity(n, n) * ridge;
         let inner = Cholesky::new(inner)
-            .ok_or_else(|| BenchError::Singular { id: "of the parameters".to_owned() })?;
+            .ok_or_else(|| FitError::Singular { id: "of the parameters".to_owned() })?;
         log += if n > 0 { log_determinant(&inner) } else { 0.0 };
         Ok(Cell { factors, columns, inner, log_determinant: log })
     }
@@ -223,13 +224,13 @@ impl<'a> Problem<'a> {
         &self,
         residuals: &[DVector<f64>],
         effects: &[(usize, f64)],
-    ) -> Result<(f64, f64), BenchError> {
+    ) -> Result<(f64, f64), FitError> {
         let has_width = self
-            .bench
+            .problem
             .observed
             .fit
             .iter()
-            .any(|&condition| self.bench.forward.spread_of_runs(condition).is_some());
+            .any(|&condition| self.problem.forward.spread_of_runs(condition).is_some());
         let widths = if has_width { WIDTHS } else { 1 };
         let mut best = (f64::INFINITY, 0.0);
         for at in 0..widths {
@@ -244,14 +245,14 @@ impl<'a> Problem<'a> {
 
     /// Probability that the largest fall of `candidates` is reached by measurements of the model as it is, whose
     /// conditions differ by `between`: the same falls of drawn measurements.
-    fn by_chance(&self, candidates: &[usize], between: f64, seed: u64) -> Result<f64, BenchError> {
+    fn by_chance(&self, candidates: &[usize], between: f64, seed: u64) -> Result<f64, FitError> {
         let mut bare = Vec::new();
         for width in COARSE_WIDTHS {
             bare.push((self.changed(&[])?, self.cell(&[], width)?));
         }
         let mut with = Vec::new();
         for &candidate in candidates {
-            for q in amplitudes(&self.bench.forward.candidates()[candidate], COARSE) {
+            for q in amplitudes(&self.problem.forward.candidates()[candidate], COARSE) {
                 let effects = [(candidate, q)];
                 // Too much of an effect may be no impact.
                 let Ok(residuals) = self.changed(&effects) else { continue };
@@ -277,7 +278,7 @@ impl<'a> Problem<'a> {
             return Ok(1.0);
         }
         let null = self.cell(&[], between)?;
-        let freedom = self.bench.observed.freedom();
+        let freedom = self.problem.observed.freedom();
         let mut random = stream(seed, Purpose::Family, 1);
         let (mut reached, mut drawn) = (0, 0);
         while drawn < DRAWS && reached < REACHED {
@@ -342,15 +343,15 @@ struct Profile<'a> {
 
 impl Profile<'_> {
     /// The least cost with the amplitude `q`, and the variance between conditions that goes with it.
-    fn cost_at(&self, q: f64) -> Result<(f64, f64), BenchError> {
+    fn cost_at(&self, q: f64) -> Result<(f64, f64), FitError> {
         let effects = [(self.candidate, q)];
         self.problem.profiled(&self.problem.changed(&effects)?, &effects)
     }
 
     /// The best amplitude, where `bare` is the cost without.
-    fn best(&self, bare: f64) -> Result<Marginal, BenchError> {
-        let Problem { bench, fitted, .. } = self.problem;
-        let candidate = &bench.forward.candidates()[self.candidate];
+    fn best(&self, bare: f64) -> Result<Marginal, FitError> {
+        let Problem { problem, fitted, .. } = self.problem;
+        let candidate = &problem.forward.candidates()[self.candidate];
         let mut grid = amplitudes(candidate, GRID);
         let zero = grid.partition_point(|q| *q < 0.0);
         grid.insert(zero, 0.0);
@@ -377,8 +378,8 @@ impl Profile<'_> {
         let mut point = fitted.fit.point.clone();
         point.effects.push((self.candidate, q));
         let noise = Noise { between, ..fitted.noise };
-        let weights = bench.weights(&point, &noise, &bench.observed.fit)?;
-        let fit = bench.data(&weights).fit(&point)?;
+        let weights = problem.weights(&point, &noise, &problem.observed.fit)?;
+        let fit = problem.data(&weights).fit(&point)?;
         Ok(Marginal {
             candidate: self.candidate,
             standard_error: fit.standard_error(fit.point.parameters.len()),
@@ -493,12 +494,12 @@ mod tests {
         let forward = Known::to(known);
         let observed = measured(&forward.ways);
         let set = set(Kind::Scalar, vec![condition(1.0, 45.0)], Vec::new());
-        let bench = Bench { set: &set, observed: &observed, forward: &forward };
+        let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
         let start = Point { parameters: Vec::new(), effects: Vec::new() };
-        let baseline = bench.fit(&start).unwrap();
-        let best = marginals(&bench, &baseline, &[0], 1).unwrap().unwrap().best.remove(0);
+        let baseline = problem.fit(&start).unwrap();
+        let best = marginals(&problem, &baseline, &[0], 1).unwrap().unwrap().best.remove(0);
         let with = Point { effects: vec![(0, 0.5)], ..start };
-        let fit = bench.data(&baseline.weights).fit(&with).unwrap();
+        let fit = problem.data(&baseline.weights).fit(&with).unwrap();
         (best, baseline.fit.chi2 - fit.chi2, fit.point.effects[0].1)
     }
 
@@ -537,10 +538,10 @@ mod tests {
         });
         let set = set(Kind::Scalar, conditions, runs.collect());
         let observed = Observed::of(&set);
-        let bench = Bench { set: &set, observed: &observed, forward: &forward };
+        let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
         let start = Point { parameters: Vec::new(), effects: Vec::new() };
-        let baseline = bench.fit(&start).unwrap();
-        let all = marginals(&bench, &baseline, &[0], 1).unwrap().unwrap();
+        let baseline = problem.fit(&start).unwrap();
+        let all = marginals(&problem, &baseline, &[0], 1).unwrap().unwrap();
         (all.best[0].fall, all.p)
     }
 

@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use crate::bench::Fitted;
 use crate::errors::{Errors, Sums};
+use crate::fit_problem::Fitted;
 use crate::observed::{Observed, ObservedCondition};
 
 /// Standard error of the means of runs, from their scatter; of readings, where there is one run.

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::bench::{Bench, BenchError, Fitted};
-use crate::chord::{Extended, extend};
+use crate::broyden::{Extended, extend};
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::forward::Candidate;
 use crate::score::{Ranking, Score, by_chance, signatures};
 use crate::signature::Signature;
@@ -34,25 +34,25 @@ pub(crate) struct Pair {
 /// # Errors
 /// If a pair cannot be fitted.
 pub fn best_two(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     baseline: &Fitted,
     candidates: &[usize],
     seed: u64,
-) -> Result<Option<Vec<usize>>, BenchError> {
-    let singles = Ranking::of(bench, baseline, candidates, seed);
-    let pair = best_pair(bench, baseline, &singles, seed)?;
+) -> Result<Option<Vec<usize>>, FitError> {
+    let singles = Ranking::of(problem, baseline, candidates, seed);
+    let pair = best_pair(problem, baseline, &singles, seed)?;
     Ok(pair.map(|pair| pair.fitted.fit.point.effects.iter().map(|&(index, _)| index).collect()))
 }
 
 /// The best pair of the effects of `singles`, which add to `baseline`.
 pub(crate) fn best_pair(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     baseline: &Fitted,
     singles: &Ranking,
     seed: u64,
-) -> Result<Option<Pair>, BenchError> {
-    let data = bench.data(&baseline.weights);
-    let mut tried: Vec<Extended> = promising(singles, bench)
+) -> Result<Option<Pair>, FitError> {
+    let data = problem.data(&baseline.weights);
+    let mut tried: Vec<Extended> = promising(singles, problem)
         .par_iter()
         .map(|[a, b]| {
             extend(&data, &baseline.fit, &[(a.candidate, &a.slope), (b.candidate, &b.slope)])
@@ -63,7 +63,7 @@ pub(crate) fn best_pair(
         let with_first = Fitted { fit, ..baseline.clone() };
         let others = singles.scores.iter().map(Score::candidate);
         let others: Vec<usize> = others.filter(|&other| other != first.candidate()).collect();
-        let second = promising_beside(bench, &with_first, &others).into_par_iter();
+        let second = promising_beside(problem, &with_first, &others).into_par_iter();
         tried
             .par_extend(second.map(|second| {
                 extend(&data, &with_first.fit, &[(second.candidate, &second.slope)])
@@ -71,14 +71,14 @@ pub(crate) fn best_pair(
     }
     let best = tried.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
     let Some(best) = best else { return Ok(None) };
-    let fitted = match bench.fit_once(&best.point, &baseline.noise) {
+    let fitted = match problem.fit_once(&best.point, &baseline.noise) {
         // A pair around which the model cannot be integrated explains nothing.
-        Err(BenchError::Predict(_)) => return Ok(None),
+        Err(FitError::Predict(_)) => return Ok(None),
         other => other?,
     };
     let mut candidates: Vec<usize> = singles.scores.iter().map(Score::candidate).collect();
     candidates.sort_unstable();
-    let data = bench.data(&fitted.weights);
+    let data = problem.data(&fitted.weights);
     let mut p = 0.0_f64;
     for member in 0..2 {
         // The model without one member, under the weights of the pair; what does it explain?
@@ -93,19 +93,19 @@ pub(crate) fn best_pair(
         let without_it = Fitted { fit, ..fitted.clone() };
         let others: Vec<usize> =
             candidates.iter().copied().filter(|&other| other != alone.effects[0].0).collect();
-        p = p.max(by_chance(bench, &without_it, &others, (removed, fall), seed));
+        p = p.max(by_chance(problem, &without_it, &others, (removed, fall), seed));
     }
     Ok(Some(Pair { fitted, p }))
 }
 
 /// The pairs that lower χ² most to first order.
-fn promising<'a>(singles: &'a Ranking, bench: &Bench<'_>) -> Vec<[&'a Signature; 2]> {
+fn promising<'a>(singles: &'a Ranking, problem: &FitProblem<'_>) -> Vec<[&'a Signature; 2]> {
     let scores = &singles.scores;
     let mut pairs = Vec::new();
     for (at, a) in scores.iter().enumerate() {
         for b in &scores[at + 1..] {
             let members = [&a.signature, &b.signature];
-            pairs.extend(fall(members, bench).map(|fall| (fall, members)));
+            pairs.extend(fall(members, problem).map(|fall| (fall, members)));
         }
     }
     pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -113,8 +113,8 @@ fn promising<'a>(singles: &'a Ranking, bench: &Bench<'_>) -> Vec<[&'a Signature;
 }
 
 /// The effects of `others` that lower the χ² of `fitted` most to first order.
-fn promising_beside(bench: &Bench<'_>, fitted: &Fitted, others: &[usize]) -> Vec<Signature> {
-    let (mut signatures, _) = signatures(bench, fitted, others);
+fn promising_beside(problem: &FitProblem<'_>, fitted: &Fitted, others: &[usize]) -> Vec<Signature> {
+    let (mut signatures, _) = signatures(problem, fitted, others);
     signatures.sort_by(|a, b| b.score.abs().total_cmp(&a.score.abs()));
     signatures.truncate(SECOND);
     signatures
@@ -122,7 +122,7 @@ fn promising_beside(bench: &Bench<'_>, fitted: &Fitted, others: &[usize]) -> Vec
 
 /// The fall of χ² by both of `members` to first order, within the ranges of their amplitudes; `None`
 /// for two that look the same, or of which one would have to be absent.
-fn fall(members: [&Signature; 2], bench: &Bench<'_>) -> Option<f64> {
+fn fall(members: [&Signature; 2], problem: &FitProblem<'_>) -> Option<f64> {
     let [a, b] = members;
     let cosine = a.unit.dot(&b.unit);
     if cosine.abs() > ALIKE {
@@ -130,7 +130,7 @@ fn fall(members: [&Signature; 2], bench: &Bench<'_>) -> Option<f64> {
     }
     let own = 1.0 - cosine * cosine;
     let along = [(a.score - cosine * b.score) / own, (b.score - cosine * a.score) / own];
-    let candidates = bench.forward.candidates();
+    let candidates = problem.forward.candidates();
     let within: [f64; 2] = std::array::from_fn(|at| {
         let Signature { candidate, norm, .. } = members[at];
         let Candidate { min, max, .. } = candidates[*candidate];

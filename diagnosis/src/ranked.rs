@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::bench::Bench;
+use crate::fit_problem::FitProblem;
 use crate::forward::{Candidate, Forward, ParameterKind};
 use crate::rounding::rounded;
 use crate::score::{Ranking, Score};
@@ -22,8 +22,8 @@ fn values(forward: &dyn Forward, point: &Point) -> Map<String, Value> {
 }
 
 /// The ranked effects, best first, then those that were not ranked.
-pub(crate) fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
-    let candidates = bench.forward.candidates();
+pub(crate) fn ranked(problem: &FitProblem<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
+    let candidates = problem.forward.candidates();
     let scores = ranking.map_or(&[][..], |ranking| &ranking.scores);
     let mut list: Vec<RankedEffect> = scores
         .iter()
@@ -45,7 +45,7 @@ pub(crate) fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<Ranked
                 status: Status::Ranked,
                 testable: true,
                 detection_limit: Some(score.signature.detection_limit()),
-                parameters: values(bench.forward, &score.point),
+                parameters: values(problem.forward, &score.point),
                 note: candidate.separable_from.clone(),
                 point: Some(score.point.clone()),
             }

@@ -4,8 +4,8 @@ use nalgebra::{Cholesky, DMatrix};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-use crate::bench::{Bench, Fitted};
 use crate::directions::{Along, Directions};
+use crate::fit_problem::{FitProblem, Fitted};
 use crate::random::{Purpose, normal, scale_of_noise, stream};
 
 /// Fewest runs of a condition that are resampled. The deviations of two have one direction and one
@@ -34,15 +34,15 @@ struct Source {
 impl Redraw {
     /// Of the conditions that `fitted` was fitted to.
     pub(crate) fn new(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         fitted: &Fitted,
         directions: &Directions,
         seed: u64,
     ) -> Self {
-        let fit = bench.observed.fit.iter();
+        let fit = problem.observed.fit.iter();
         let each = fit.zip(&fitted.weights).zip(directions.conditions());
         let conditions = each.map(|((&condition, weight), within)| {
-            let observed = &bench.observed.conditions[condition];
+            let observed = &problem.observed.conditions[condition];
             let n = observed.mean.len();
             let runs = Some(observed.runs.len()).filter(|&runs| runs >= ENOUGH_RUNS);
             let columns = runs.map_or_else(
@@ -51,7 +51,7 @@ impl Redraw {
                     let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run)));
                     let mut columns: Vec<_> = deviations.collect();
                     let effects = &fitted.fit.point.effects;
-                    let own = bench.own_covariance(condition, effects, &fitted.noise);
+                    let own = problem.own_covariance(condition, effects, &fitted.noise);
                     let own = own.and_then(Cholesky::new).map(|factor| factor.l());
                     for shared in own.iter().chain(weight.between()) {
                         let shared = weight.whiten_columns(shared);
@@ -66,7 +66,7 @@ impl Redraw {
         let conditions = conditions.collect();
         Self {
             conditions,
-            freedom: bench.observed.freedom(),
+            freedom: problem.observed.freedom(),
             scale: stream(seed, Purpose::NoiseScale, 0),
         }
     }

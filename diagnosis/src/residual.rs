@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::bench::{Bench, BenchError};
+use crate::fit_problem::{FitError, FitProblem};
 use crate::noise::Noise;
 use crate::observable::Observable;
 use crate::sensitivity::Point;
@@ -49,14 +49,14 @@ pub struct Unpredicted {
 /// The held-out conditions that all of several models predict, each at its point, and the others: errors of models are
 /// compared over the same conditions.
 #[must_use]
-pub fn predictable(models: &[(Bench<'_>, &Point)]) -> (Vec<usize>, Vec<Unpredicted>) {
+pub fn predictable(models: &[(FitProblem<'_>, &Point)]) -> (Vec<usize>, Vec<Unpredicted>) {
     let Some((first, _)) = models.first() else { return (Vec::new(), Vec::new()) };
     let mut unpredicted = Vec::new();
     let mut is_predicted = |&condition: &usize| {
         let before = unpredicted.len();
-        for (model, (bench, point)) in models.iter().enumerate() {
-            if let Err(error) = point.predict(bench.forward, condition) {
-                let condition = bench.observed.conditions[condition].id.clone();
+        for (model, (problem, point)) in models.iter().enumerate() {
+            if let Err(error) = point.predict(problem.forward, condition) {
+                let condition = problem.observed.conditions[condition].id.clone();
                 unpredicted.push(Unpredicted { model, condition, why: error.why });
             }
         }
@@ -74,18 +74,18 @@ pub fn predictable(models: &[(Bench<'_>, &Point)]) -> (Vec<usize>, Vec<Unpredict
 /// # Errors
 /// If the model fails.
 pub fn residuals(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     point: &Point,
     noise: &Noise,
     holdout: &[usize],
-) -> Result<Vec<Residual>, BenchError> {
-    let mut conditions: Vec<usize> = bench.observed.fit.iter().chain(holdout).copied().collect();
+) -> Result<Vec<Residual>, FitError> {
+    let mut conditions: Vec<usize> = problem.observed.fit.iter().chain(holdout).copied().collect();
     conditions.sort_unstable();
-    let weights = bench.weights(point, noise, &conditions)?;
+    let weights = problem.weights(point, noise, &conditions)?;
     let mut all = Vec::new();
     for (&condition, weight) in conditions.iter().zip(&weights) {
-        let observed = &bench.observed.conditions[condition];
-        let predicted = weight.predict(point, bench.forward, condition)?;
+        let observed = &problem.observed.conditions[condition];
+        let predicted = weight.predict(point, problem.forward, condition)?;
         let errors = weight.standard_errors();
         for (at, (observable, place)) in observed.layout.places().into_iter().enumerate() {
             all.push(Residual {

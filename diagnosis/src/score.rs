@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use crate::bench::{Bench, Fitted};
-use crate::chord::{extend, improve};
+use crate::broyden::{extend, improve};
 use crate::fit::Fit;
+use crate::fit_problem::{FitProblem, Fitted};
 use crate::forward::PredictError;
 use crate::marginal::Marginals;
 use crate::noise::NoiseSource;
@@ -21,7 +21,7 @@ const OTHER_FORM: f64 = 4.6;
 /// Fall of χ² by which a fit from another start has to be better to be another minimum, and not the same one again.
 const OTHER_MINIMUM: f64 = 0.1;
 
-/// Twins whose signatures have at least this cosine are one force under these conditions.
+/// Confounders whose signatures have at least this cosine are one force under these conditions.
 const SAME: f64 = 0.999;
 
 /// A model with one more effect.
@@ -72,12 +72,17 @@ pub(crate) struct Ranking {
 
 impl Ranking {
     /// Adds each of `candidates` (indices) to `fitted` and refits, under its weights.
-    pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted, candidates: &[usize], seed: u64) -> Self {
-        let (signatures, failed) = signatures(bench, fitted, candidates);
+    pub(crate) fn of(
+        problem: &FitProblem<'_>,
+        fitted: &Fitted,
+        candidates: &[usize],
+        seed: u64,
+    ) -> Self {
+        let (signatures, failed) = signatures(problem, fitted, candidates);
         let mut scores: Vec<Score> =
-            signatures.into_par_iter().map(|signature| refit(bench, fitted, signature)).collect();
-        scores.par_iter_mut().for_each(|score| start_over(bench, fitted, score));
-        let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
+            signatures.into_par_iter().map(|signature| refit(problem, fitted, signature)).collect();
+        scores.par_iter_mut().for_each(|score| start_over(problem, fitted, score));
+        let id = |score: &Score| &problem.forward.candidates()[score.candidate()].id;
         let (mut leaders, mut rows) = (Vec::new(), Vec::new());
         for row in best_first(&scores) {
             if !leaders.contains(&id(&scores[row])) {
@@ -88,20 +93,20 @@ impl Ranking {
             }
             rows.push(row);
         }
-        let polished = |&row: &usize| (row, polished(bench, fitted, &scores[row]));
+        let polished = |&row: &usize| (row, polished(problem, fitted, &scores[row]));
         for (row, fit) in rows.par_iter().map(polished).collect::<Vec<_>>() {
             if let Some(fit) = fit {
                 scores[row].take(fitted.fit.chi2, fit);
             }
         }
-        start_from_best_form(bench, fitted, &mut scores, &rows);
-        Self::ranked(bench, fitted, scores, failed, seed)
+        start_from_best_form(problem, fitted, &mut scores, &rows);
+        Self::ranked(problem, fitted, scores, failed, seed)
     }
 
     /// Of the `marginals` of candidates, which have weights of their own; those of `fitted` say how alike the
     /// candidates are.
     pub(crate) fn by_likelihood(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         fitted: &Fitted,
         marginals: &Marginals,
         seed: u64,
@@ -109,7 +114,7 @@ impl Ranking {
         let mut failed = marginals.failed.clone();
         let mut scores = Vec::with_capacity(marginals.best.len());
         for marginal in &marginals.best {
-            match signature(bench, fitted, marginal.candidate) {
+            match signature(problem, fitted, marginal.candidate) {
                 Ok(signature) => scores.extend(signature.map(|signature| Score {
                     delta: marginal.fall,
                     point: marginal.point.clone(),
@@ -121,7 +126,7 @@ impl Ranking {
                 Err(why) => failed.push((marginal.candidate, why)),
             }
         }
-        let mut ranking = Self::ranked(bench, fitted, scores, failed, seed);
+        let mut ranking = Self::ranked(problem, fitted, scores, failed, seed);
         // Falls under covariances of their own are no squares of normal scores.
         ranking.p = marginals.p;
         // How alike effects are under one covariance says too little of those that have each their own.
@@ -137,25 +142,25 @@ impl Ranking {
     /// All falls of χ² are measured in the variance that the repeats show along the signature of the
     /// best: each in its own would rank by how well that variance happens to be known.
     fn ranked(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         fitted: &Fitted,
         mut scores: Vec<Score>,
         failed: Vec<(usize, PredictError)>,
         seed: u64,
     ) -> Self {
         let signatures: Vec<&Signature> = scores.iter().map(|score| &score.signature).collect();
-        let null = NullScores::new(collinearity(&signatures), freedom(bench, fitted), seed);
+        let null = NullScores::new(collinearity(&signatures), freedom(problem, fitted), seed);
         let rows = best_first(&scores);
         let scale = rows.first().map_or(1.0, |&best| {
-            variance_along(bench, fitted, &scores[best].signature.unit).max(1.0)
+            variance_along(problem, fitted, &scores[best].signature.unit).max(1.0)
         });
         for score in &mut scores {
             score.delta /= scale;
             score.standard_error = score.standard_error.map(|se| se * scale.sqrt());
             score.strength = score.amplitude().abs() * score.signature.norm / scale.sqrt();
         }
-        let rows = one_form_each(bench, &scores, &rows);
-        let effect = |row: usize| &bench.forward.candidates()[scores[row].candidate()].id;
+        let rows = one_form_each(problem, &scores, &rows);
+        let effect = |row: usize| &problem.forward.candidates()[scores[row].candidate()].id;
         let first = rows.iter().map(|&row| {
             null.ranked_first(row, scores[row].strength, |other| effect(other) == effect(row))
         });
@@ -175,18 +180,18 @@ impl Ranking {
     }
 
     /// Places of the effects that cannot be told from the best, itself included: those that help, and whose fall is
-    /// within the odds of the model. A twin farther behind, which the data lack the means to tell from the best, is
+    /// within the odds of the model. A confounder farther behind, which the data lack the means to tell from the best, is
     /// one of them only where both are one force under these conditions and no end of its range holds it back:
     /// what explains less by more than the odds is told apart by that.
-    pub(crate) fn not_separable(&self, bench: &Bench<'_>) -> Vec<usize> {
-        let candidates = bench.forward.candidates();
+    pub(crate) fn not_separable(&self, problem: &FitProblem<'_>) -> Vec<usize> {
+        let candidates = problem.forward.candidates();
         let Some(best) = self.scores.first() else { return Vec::new() };
-        let twins = &candidates[best.candidate()].unresolved;
-        let within = bench.forward.separation();
+        let confounders = &candidates[best.candidate()].unresolved;
+        let within = problem.forward.separation();
         let confused = |other: &Score| {
             let candidate = &candidates[other.candidate()];
             let is_same = || {
-                twins.contains(&candidate.id)
+                confounders.contains(&candidate.id)
                     && candidate.bound_at(other.amplitude()).is_none()
                     && best.signature.unit.dot(&other.signature.unit).abs() >= SAME
             };
@@ -200,36 +205,36 @@ impl Ranking {
 /// Probability that the best of `candidates` lowers the χ² of `fitted` by `fall` or more by chance,
 /// where `candidate` is the one that does; 1 if the parameters do the same as it.
 pub(crate) fn by_chance(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     fitted: &Fitted,
     candidates: &[usize],
     (candidate, fall): (usize, f64),
     seed: u64,
 ) -> f64 {
-    let (signatures, _) = signatures(bench, fitted, candidates);
+    let (signatures, _) = signatures(problem, fitted, candidates);
     let Some(own) = signatures.iter().find(|signature| signature.candidate == candidate) else {
         return 1.0;
     };
-    let scale = variance_along(bench, fitted, &own.unit).max(1.0);
+    let scale = variance_along(problem, fitted, &own.unit).max(1.0);
     let all: Vec<&Signature> = signatures.iter().collect();
-    NullScores::new(collinearity(&all), freedom(bench, fitted), seed).family_wise_p(fall / scale)
+    NullScores::new(collinearity(&all), freedom(problem, fitted), seed).family_wise_p(fall / scale)
 }
 
 /// From how many numbers the size of the noise of `fitted` is known; infinite where it is stated.
-fn freedom(bench: &Bench<'_>, fitted: &Fitted) -> f64 {
+fn freedom(problem: &FitProblem<'_>, fitted: &Fitted) -> f64 {
     match fitted.noise.source {
-        NoiseSource::Repeats => bench.observed.freedom(),
+        NoiseSource::Repeats => problem.observed.freedom(),
         _ => f64::INFINITY,
     }
 }
 
 /// The signatures that exist, and the candidates whose failed.
 pub(crate) fn signatures(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     fitted: &Fitted,
     candidates: &[usize],
 ) -> (Vec<Signature>, Vec<(usize, PredictError)>) {
-    let each = candidates.par_iter().map(|&one| (one, signature(bench, fitted, one)));
+    let each = candidates.par_iter().map(|&one| (one, signature(problem, fitted, one)));
     let (mut found, mut failed) = (Vec::new(), Vec::new());
     for (candidate, signature) in each.collect::<Vec<_>>() {
         match signature {
@@ -241,8 +246,8 @@ pub(crate) fn signatures(
 }
 
 /// The fall of χ² by a refit with derivatives that are kept.
-fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
-    let data = bench.data(&fitted.weights);
+fn refit(problem: &FitProblem<'_>, fitted: &Fitted, signature: Signature) -> Score {
+    let data = problem.data(&fitted.weights);
     let extended = extend(&data, &fitted.fit, &[(signature.candidate, &signature.slope)]);
     Score {
         delta: (fitted.fit.chi2 - extended.chi2).max(0.0),
@@ -255,15 +260,15 @@ fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
 }
 
 /// The same with derivatives of its own, from there, if the model can be integrated around it.
-fn polished(bench: &Bench<'_>, fitted: &Fitted, score: &Score) -> Option<Fit> {
-    bench.data(&fitted.weights).fit_as_listed(&score.point).ok()
+fn polished(problem: &FitProblem<'_>, fitted: &Fitted, score: &Score) -> Option<Fit> {
+    problem.data(&fitted.weights).fit_as_listed(&score.point).ok()
 }
 
 /// The same from where parameters start, first with the apparatus as it is stated, if that explains more: around a fit
 /// in which errors of the apparatus and a scatter between conditions make up for what the model lacks, derivatives say
 /// little of what an effect would do.
-fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
-    let data = bench.data(&fitted.weights);
+fn start_over(problem: &FitProblem<'_>, fitted: &Fitted, score: &mut Score) {
+    let data = problem.data(&fitted.weights);
     let least = fitted.fit.chi2 - score.delta - OTHER_MINIMUM;
     let Ok(stated) = data.fit_with_apparatus_as_stated(score.candidate()) else { return };
     // Kept derivatives say at little cost whether a search can come this far.
@@ -277,8 +282,13 @@ fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
 
 /// The other forms among `rows` of the effect that explains most, from the parameters of its best form, if that explains
 /// more: each form may end in a minimum of its own, where errors of the apparatus make up for it.
-fn start_from_best_form(bench: &Bench<'_>, fitted: &Fitted, scores: &mut [Score], rows: &[usize]) {
-    let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
+fn start_from_best_form(
+    problem: &FitProblem<'_>,
+    fitted: &Fitted,
+    scores: &mut [Score],
+    rows: &[usize],
+) {
+    let id = |score: &Score| &problem.forward.candidates()[score.candidate()].id;
     let Some(best) =
         rows.iter().copied().max_by(|&a, &b| scores[a].delta.total_cmp(&scores[b].delta))
     else {
@@ -289,7 +299,7 @@ fn start_from_best_form(bench: &Bench<'_>, fitted: &Fitted, scores: &mut [Score]
     let fits: Vec<(usize, Option<Fit>)> = others
         .map(|&row| {
             let start = Point { parameters: parameters.clone(), ..scores[row].point.clone() };
-            (row, bench.data(&fitted.weights).fit_as_listed(&start).ok())
+            (row, problem.data(&fitted.weights).fit_as_listed(&start).ok())
         })
         .collect();
     for (row, fit) in fits {
@@ -301,8 +311,8 @@ fn start_from_best_form(bench: &Bench<'_>, fitted: &Fitted, scores: &mut [Score]
 
 /// Those of `rows`, best first, that are the form of their effect: the one that explains most, in its place; the one
 /// that is listed unless another explains more by [`OTHER_FORM`].
-fn one_form_each(bench: &Bench<'_>, scores: &[Score], rows: &[usize]) -> Vec<usize> {
-    let candidate = |row: usize| &bench.forward.candidates()[scores[row].candidate()];
+fn one_form_each(problem: &FitProblem<'_>, scores: &[Score], rows: &[usize]) -> Vec<usize> {
+    let candidate = |row: usize| &problem.forward.candidates()[scores[row].candidate()];
     let mut kept: Vec<usize> = Vec::new();
     for &row in rows {
         match kept.iter_mut().find(|&&mut other| candidate(other).id == candidate(row).id) {

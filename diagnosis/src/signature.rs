@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::bench::{Bench, Fitted};
+use crate::fit_problem::{FitProblem, Fitted};
 use crate::forward::{Candidate, PredictError};
 use crate::projection::Basis;
 use crate::sensitivity::Point;
@@ -37,11 +37,11 @@ impl Signature {
 
 /// The signature of `candidate` around `fitted`; `None` if the model can imitate it entirely.
 pub(crate) fn signature(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     fitted: &Fitted,
     candidate: usize,
 ) -> Result<Option<Signature>, PredictError> {
-    let raw = derivative(bench, fitted, candidate)?;
+    let raw = derivative(problem, fitted, candidate)?;
     let parameters = Basis::of(&fitted.fit.jacobian);
     let rest = parameters.rest(&raw);
     let norm = rest.norm();
@@ -56,12 +56,12 @@ pub(crate) fn signature(
 /// Whitened derivative of the observables by the amplitude of `candidate` at zero; to one side, of
 /// second order, where the amplitude has one sign.
 fn derivative(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     fitted: &Fitted,
     candidate: usize,
 ) -> Result<DVector<f64>, PredictError> {
-    let &Candidate { min, max, step, .. } = &bench.forward.candidates()[candidate];
-    let data = bench.data(&fitted.weights);
+    let &Candidate { min, max, step, .. } = &problem.forward.candidates()[candidate];
+    let data = problem.data(&fitted.weights);
     let residual = |q: f64| {
         let mut point: Point = fitted.fit.point.clone();
         point.effects.push((candidate, q));
@@ -90,18 +90,22 @@ pub(crate) fn collinearity(signatures: &[&Signature]) -> DMatrix<f64> {
 /// Variance of the residual along `unit` as the repeats themselves show it, whatever the noise model
 /// says, and with the error of the prediction itself; a condition without repeats counts as the noise
 /// model has it.
-pub(crate) fn variance_along(bench: &Bench<'_>, fitted: &Fitted, unit: &DVector<f64>) -> f64 {
+pub(crate) fn variance_along(
+    problem: &FitProblem<'_>,
+    fitted: &Fitted,
+    unit: &DVector<f64>,
+) -> f64 {
     let mut start = 0;
     let mut variance = 0.0;
-    for (&condition, weight) in bench.observed.fit.iter().zip(&fitted.weights) {
-        let observed = &bench.observed.conditions[condition];
+    for (&condition, weight) in problem.observed.fit.iter().zip(&fitted.weights) {
+        let observed = &problem.observed.conditions[condition];
         let part = unit.rows(start, observed.mean.len());
         start += observed.mean.len();
         let runs = observed.runs.len() as f64;
         variance += if observed.runs.len() > 1 {
             let along = |run| part.dot(&weight.whiten(&observed.deviation(run))).powi(2);
             let effects = &fitted.fit.point.effects;
-            let own = bench.own_covariance(condition, effects, &fitted.noise);
+            let own = problem.own_covariance(condition, effects, &fitted.noise);
             let own = own.map_or(0.0, |own| {
                 let half = weight.whiten_columns(&own).transpose();
                 part.dot(&weight.whiten_columns(&half).tr_mul(&part))

@@ -7,7 +7,7 @@ use crate::random::{Purpose, normal, scale_of_noise, stream};
 /// Draws of the scores of all effects.
 const DRAWS: usize = 10_000;
 
-/// Keeps the collinearity of exact twins positive definite; their scores then differ by 1e-4.
+/// Keeps the collinearity of exact confounders positive definite; their scores then differ by 1e-4.
 const JITTER: f64 = 1e-8;
 
 /// Scores of all effects under noise alone, drawn with their collinearity.
@@ -84,7 +84,7 @@ mod tests {
         // P(χ²₁ ≥ 6.635) = 0.01; the draws know 0.02 to ± 0.0014, here three of those.
         let p = pair(0.0).family_wise_p(6.635);
         assert!((p - 0.0199).abs() < 0.0042, "{p}");
-        // Twins are one effect.
+        // Confounders are one effect.
         let p = pair(1.0).family_wise_p(6.635);
         assert!((p - 0.01).abs() < 0.003, "{p}");
     }
@@ -117,9 +117,9 @@ mod tests {
 
     #[test]
     fn an_effect_wins_in_any_of_its_forms() {
-        let twins = pair(1.0);
-        assert!((twins.ranked_first(0, 5.0, |k| k == 0) - 0.5).abs() < 0.03);
-        assert!((twins.ranked_first(0, 5.0, |_| true) - 1.0).abs() < 1e-12);
+        let confounders = pair(1.0);
+        assert!((confounders.ranked_first(0, 5.0, |k| k == 0) - 0.5).abs() < 0.03);
+        assert!((confounders.ranked_first(0, 5.0, |_| true) - 1.0).abs() < 1e-12);
     }
 
     #[test]

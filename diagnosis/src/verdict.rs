@@ -7,9 +7,9 @@ use serde_json::{Map, Value};
 
 use crate::added_force::AddedForce;
 use crate::apparatus::is_of_the_instrument;
-use crate::bench::Fitted;
 use crate::between::Between;
 use crate::fit::Fit;
+use crate::fit_problem::Fitted;
 use crate::forward::{Bound, Candidate, Forward, ParameterKind};
 use crate::held_out::HeldOut;
 use crate::missing_force::MissingForce;
@@ -221,7 +221,7 @@ pub struct RankedEffect {
     /// Parameters of the model with it alone, with their units.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub parameters: Map<String, Value>,
-    /// Why it is not ranked, or what it takes to tell it from its twins.
+    /// Why it is not ranked, or what it takes to tell it from its confounders.
     pub note: String,
     /// The model with it, fitted.
     #[serde(skip)]
@@ -493,6 +493,29 @@ mod tests {
         assert_eq!(told(Verdict::Supported, &[tested, tested, not]), (1, Vec::new()));
         assert_eq!(told(Verdict::Supported, &[tested]), (0, Vec::new()));
         assert_eq!(told(Verdict::NothingDetected, &[not]), (0, Vec::new()), "nothing is named");
+    }
+
+    #[test]
+    fn an_instrument_is_not_five_standard_deviations_off_and_a_day_may_be() {
+        let error = |id: &str, value: f64, se: f64| ApparatusError {
+            id: id.to_owned(),
+            of: None,
+            value,
+            se: Some(se),
+            unit: "1".to_owned(),
+            prior_sigma: Some(0.02),
+            named: false,
+        };
+        for id in ["speed-scale", "camera-scale", "launch-angle", "tilt"] {
+            assert!(error(id, -0.11, 0.01).is_implausible(), "{id}");
+            assert!(!error(id, -0.09, 0.01).is_implausible(), "{id}: within five");
+            assert!(!error(id, -0.11, 0.05).is_implausible(), "{id}: not clear of zero");
+        }
+        for id in ["time-zero", "depth-zero", "range-zero", "session", "mass"] {
+            assert!(!error(id, 0.2, 0.01).is_implausible(), "{id}");
+        }
+        let exact = ApparatusError { prior_sigma: None, ..error("tilt", 1.0, 0.01) };
+        assert!(!exact.is_implausible(), "nothing is known of it");
     }
 
     #[test]

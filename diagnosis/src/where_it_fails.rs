@@ -13,8 +13,8 @@ use measurements::MeasurementSet;
 pub use self::files::{FILES, FilesError, MISSING_FORCE, files_of};
 pub use self::signature::Signature;
 
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::force_error::ForceErrors;
 use crate::noise_floor::noise_floor;
 use crate::observed::Observed;
@@ -56,18 +56,18 @@ impl Failing {
     /// # Errors
     /// If the model fails.
     pub fn of(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         (model, fitted): (&str, &Fitted),
         holdout: &[usize],
         seed: u64,
-    ) -> Result<Self, BenchError> {
+    ) -> Result<Self, FitError> {
         let point = &fitted.fit.point;
         Ok(Self {
             model: model.to_owned(),
-            force_errors: ForceErrors::of(bench, fitted, seed)?,
-            residuals: residuals(bench, point, &fitted.noise, holdout)?,
-            fit: Errors::at(bench, point, &bench.observed.fit)?,
-            holdout: Errors::at(bench, point, holdout)?,
+            force_errors: ForceErrors::of(problem, fitted, seed)?,
+            residuals: residuals(problem, point, &fitted.noise, holdout)?,
+            fit: Errors::at(problem, point, &problem.observed.fit)?,
+            holdout: Errors::at(problem, point, holdout)?,
         })
     }
 }
@@ -79,27 +79,27 @@ impl<'a> WhereItFails<'a> {
     /// # Errors
     /// If the model fails.
     pub fn of_diagnosis(
-        bench: &Bench<'a>,
+        problem: &FitProblem<'a>,
         name: &str,
         diagnosis: &Diagnosis,
         seed: u64,
-    ) -> Result<Self, BenchError> {
-        let Bench { set, observed, .. } = *bench;
+    ) -> Result<Self, FitError> {
+        let FitProblem { set, observed, .. } = *problem;
         let Some(baseline) = &diagnosis.baseline else {
             return Ok(Self { set, observed, models: Vec::new(), signatures: Vec::new() });
         };
         let proposed = diagnosis.proposed.as_ref().filter(|_| !diagnosis.effects.is_empty());
         let points = [Some(baseline), proposed].into_iter().flatten();
-        let asked: Vec<_> = points.map(|fitted| (*bench, &fitted.fit.point)).collect();
+        let asked: Vec<_> = points.map(|fitted| (*problem, &fitted.fit.point)).collect();
         // What is not predicted stands in the diagnosis.
         let (holdout, _) = predictable(&asked);
-        let mut models = vec![Failing::of(bench, (name, baseline), &holdout, seed)?];
+        let mut models = vec![Failing::of(problem, (name, baseline), &holdout, seed)?];
         if let Some(proposed) = proposed {
             let name = format!("{name} + {}", diagnosis.effects.join(" + "));
-            models.push(Failing::of(bench, (&name, proposed), &holdout, seed)?);
+            models.push(Failing::of(problem, (&name, proposed), &holdout, seed)?);
         }
         let signatures =
-            signature::best_two(bench, baseline, (&models[0].residuals, &holdout), diagnosis);
+            signature::best_two(problem, baseline, (&models[0].residuals, &holdout), diagnosis);
         Ok(Self { set, observed, models, signatures })
     }
 

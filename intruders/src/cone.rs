@@ -12,7 +12,7 @@ use resistive::{Compact, Silhouette};
 use crate::body::Body;
 use crate::measured::{Measured, TipForm, no_centre};
 use crate::outline::{Draft, Revolved};
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::registry::{AssemblyRequest, Launchable, ShapeEntry};
 use crate::shaft::{SHAFT, WithShaft};
 use crate::specs::{DIAMETER, section};
 
@@ -72,14 +72,14 @@ const PARAMS: &[ParamSpec] = &[
     SHAFT,
 ];
 
-fn assembly(casting: &Casting) -> Launchable {
-    let shape = Wedge::new(casting.params, casting.space);
-    let (reach, inertia) = (shape.reach(), casting.mass * shape.inertia_per_mass().y);
-    let shape = WithShaft::new(shape, casting.params, casting.space);
-    let body = Compact::new(Arc::new(shape), reach, casting.mass, inertia);
+fn assembly(request: &AssemblyRequest) -> Launchable {
+    let shape = Wedge::new(request.params, request.space);
+    let (reach, inertia) = (shape.reach(), request.mass * shape.inertia_per_mass().y);
+    let shape = WithShaft::new(shape, request.params, request.space);
+    let body = Compact::new(Arc::new(shape), reach, request.mass, inertia);
     Launchable {
         assembly: Box::new(body),
-        start: Compact::at_surface(casting.velocity, casting.spin),
+        start: Compact::at_surface(request.velocity, request.spin),
     }
 }
 

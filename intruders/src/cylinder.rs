@@ -11,7 +11,7 @@ use resistive::{Compact, Silhouette};
 use crate::body::Body;
 use crate::measured::{Measured, TipForm};
 use crate::outline::{Draft, Revolved};
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::registry::{AssemblyRequest, Launchable, ShapeEntry};
 use crate::shaft::{SHAFT, WithShaft};
 use crate::specs::{DIAMETER, length, section};
 
@@ -52,14 +52,14 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
 const PARAMS: &[ParamSpec] =
     &[DIAMETER, length("height", Range::closed(1e-3, 1.0), "height along the axis"), SHAFT];
 
-fn assembly(casting: &Casting) -> Launchable {
-    let shape = Flat::new(casting.params, casting.space);
-    let inertia = casting.mass * shape.inertia_per_mass().y;
+fn assembly(request: &AssemblyRequest) -> Launchable {
+    let shape = Flat::new(request.params, request.space);
+    let inertia = request.mass * shape.inertia_per_mass().y;
     let reach = 0.5 * shape.height;
-    let shape = WithShaft::new(shape, casting.params, casting.space);
+    let shape = WithShaft::new(shape, request.params, request.space);
     Launchable {
-        assembly: Box::new(Compact::new(Arc::new(shape), reach, casting.mass, inertia)),
-        start: Compact::at_surface(casting.velocity, casting.spin),
+        assembly: Box::new(Compact::new(Arc::new(shape), reach, request.mass, inertia)),
+        start: Compact::at_surface(request.velocity, request.spin),
     }
 }
 

@@ -11,7 +11,7 @@ use resistive::{Compact, Silhouette};
 use crate::body::Body;
 use crate::measured::{Measured, TipForm, no_centre, of_sphere, spherical};
 use crate::outline::{Draft, Revolved};
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::registry::{AssemblyRequest, Launchable, ShapeEntry};
 use crate::shaft::{SHAFT, WithShaft};
 use crate::specs::{DIAMETER, section};
 use crate::sphere::Cap;
@@ -52,14 +52,14 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
 
 const PARAMS: &[ParamSpec] = &[DIAMETER, SHAFT];
 
-fn assembly(casting: &Casting) -> Launchable {
-    let shape = Dome::new(casting.params, casting.space);
+fn assembly(request: &AssemblyRequest) -> Launchable {
+    let shape = Dome::new(request.params, request.space);
     let (reach, inertia) =
-        (shape.whole.radius - shape.below(), casting.mass * shape.inertia_per_mass().y);
-    let shape = WithShaft::new(shape, casting.params, casting.space);
+        (shape.whole.radius - shape.below(), request.mass * shape.inertia_per_mass().y);
+    let shape = WithShaft::new(shape, request.params, request.space);
     Launchable {
-        assembly: Box::new(Compact::new(Arc::new(shape), reach, casting.mass, inertia)),
-        start: Compact::at_surface(casting.velocity, casting.spin),
+        assembly: Box::new(Compact::new(Arc::new(shape), reach, request.mass, inertia)),
+        start: Compact::at_surface(request.velocity, request.spin),
     }
 }
 

@@ -21,7 +21,7 @@ mod two_link_chain;
 pub use body::{Body, Drawing};
 pub use hinged_links::HingedLinks;
 pub use measured::{Measured, TipForm};
-pub use registry::{Casting, Launchable, ShapeEntry, UnderShaft};
+pub use registry::{AssemblyRequest, Launchable, ShapeEntry, UnderShaft};
 
 /// Every shape, in the order of the docs.
 pub static SHAPES: &[&ShapeEntry] = &[

@@ -7,7 +7,7 @@ use resistive::{Assembly, Part, PartLoad, State};
 
 use crate::equations::Equations;
 use crate::measured::{Measured, no_centre};
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::registry::{AssemblyRequest, Launchable, ShapeEntry};
 use crate::rod::{Pose, Rod, link_angle};
 use crate::specs::{DIAMETER, length};
 
@@ -44,10 +44,10 @@ const PARAMS: &[ParamSpec] = &[
     ),
 ];
 
-fn assembly(casting: &Casting) -> Launchable {
-    let link = Link::new(casting.params, casting.mass);
-    let Casting { velocity, spin, .. } = *casting;
-    let angle = casting.params.get("link_angle");
+fn assembly(request: &AssemblyRequest) -> Launchable {
+    let link = Link::new(request.params, request.mass);
+    let AssemblyRequest { velocity, spin, .. } = *request;
+    let angle = request.params.get("link_angle");
     // From the tip, at the origin, to the centre, which is what the coordinates say.
     let at_tip = Pose { reference: Vec3::zeros(), velocity, angle, spin };
     let arm = 0.5 * link.0.length;

@@ -48,7 +48,7 @@ pub struct ShapeEntry {
     /// What measurements need to know of it.
     pub measured: Measured,
     /// Makes it for a resistive medium.
-    pub assembly: fn(&Casting) -> Launchable,
+    pub assembly: fn(&AssemblyRequest) -> Launchable,
 }
 
 impl ShapeEntry {
@@ -70,7 +70,7 @@ impl ShapeEntry {
 
 /// What an intruder for a resistive medium is made from.
 #[derive(Clone, Copy, Debug)]
-pub struct Casting<'a> {
+pub struct AssemblyRequest<'a> {
     /// SI values that fill the entry's `params`.
     pub params: &'a ParamTable,
     /// Planar or spatial.

@@ -78,7 +78,7 @@ impl<S: Silhouette> Silhouette for WithShaft<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Casting, SHAPES};
+    use crate::{AssemblyRequest, SHAPES};
     use engine::math::Vec3;
     use resistive::State;
 
@@ -92,7 +92,13 @@ mod tests {
             params.set(key, value);
         }
         let (velocity, spin) = (Vec3::new(0.0, 0.0, -1.0), 0.0);
-        let made = (entry.assembly)(&Casting { params: &params, space, mass: 0.1, velocity, spin });
+        let made = (entry.assembly)(&AssemblyRequest {
+            params: &params,
+            space,
+            mass: 0.1,
+            velocity,
+            spin,
+        });
         let state = State { position: [0.0, -depth, 0.0, 0.0], ..made.start };
         let part = made.assembly.part(0, &state);
         (part.immersion.volume, part.immersion.section)

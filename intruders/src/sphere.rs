@@ -11,7 +11,7 @@ use resistive::{Compact, Silhouette};
 use crate::body::{Body, Drawing};
 use crate::measured::{Measured, TipForm, of_sphere, spherical};
 use crate::parry_surface::BallSurface;
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::registry::{AssemblyRequest, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
 
 const PARAMS: &[ParamSpec] = &[DIAMETER];
@@ -42,7 +42,7 @@ pub(crate) const DISC: ShapeEntry = ShapeEntry {
         }),
         centre: |diameter, _| Some(0.5 * diameter),
     },
-    assembly: |casting| compact(casting, disc),
+    assembly: |request| compact(request, disc),
 };
 
 /// The registry's line for the sphere; in a planar bed it is a disc with a sphere's moment of inertia.
@@ -71,7 +71,7 @@ pub(crate) const SPHERE: ShapeEntry = ShapeEntry {
         }),
         centre: |diameter, _| Some(0.5 * diameter),
     },
-    assembly: |casting| compact(casting, sphere),
+    assembly: |request| compact(request, sphere),
 };
 
 fn disc(params: &ParamTable, _: Space) -> Body {
@@ -110,13 +110,13 @@ fn contact_area(params: &ParamTable, space: Space, depth: f64) -> f64 {
 }
 
 /// The body for a resistive medium; `body` has its moment of inertia.
-fn compact(casting: &Casting, body: fn(&ParamTable, Space) -> Body) -> Launchable {
-    let radius = 0.5 * casting.params.get("diameter");
-    let inertia = casting.mass * body(casting.params, casting.space).inertia_per_mass.y;
-    let silhouette = Arc::new(Cap { radius, space: casting.space });
+fn compact(request: &AssemblyRequest, body: fn(&ParamTable, Space) -> Body) -> Launchable {
+    let radius = 0.5 * request.params.get("diameter");
+    let inertia = request.mass * body(request.params, request.space).inertia_per_mass.y;
+    let silhouette = Arc::new(Cap { radius, space: request.space });
     Launchable {
-        assembly: Box::new(Compact::new(silhouette, radius, casting.mass, inertia)),
-        start: Compact::at_surface(casting.velocity, casting.spin),
+        assembly: Box::new(Compact::new(silhouette, radius, request.mass, inertia)),
+        start: Compact::at_surface(request.velocity, request.spin),
     }
 }
 

@@ -6,7 +6,7 @@ use resistive::State;
 use crate::chain::{Chain, angles, deeper};
 use crate::hinged_links::HingedLinks;
 use crate::measured::{Measured, no_centre};
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::registry::{AssemblyRequest, Launchable, ShapeEntry};
 use crate::rod::{Rod, link_angle};
 use crate::specs::{DIAMETER, length};
 
@@ -46,10 +46,10 @@ const PARAMS: &[ParamSpec] = &[
 
 /// The links start at rest relative to each other. The deeper tip is at the surface, the first of two
 /// that are equally deep; the other meets it later.
-fn assembly(casting: &Casting) -> Launchable {
-    let chain = Chain::new(casting.params, casting.mass);
-    let Casting { velocity, spin, .. } = *casting;
-    let angles = angles(casting.params);
+fn assembly(request: &AssemblyRequest) -> Launchable {
+    let chain = Chain::new(request.params, request.mass);
+    let AssemblyRequest { velocity, spin, .. } = *request;
+    let angles = angles(request.params);
     let (sin, cos) = libm::sincos(deeper(angles));
     let arm = chain.links[0].length;
     let start = State {

@@ -3,7 +3,7 @@
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
-use intruders::{Casting, Launchable, SHAPES, ShapeEntry};
+use intruders::{AssemblyRequest, Launchable, SHAPES, ShapeEntry};
 use resistive::{Immersion, State};
 
 /// A shape of middling size, or leaning, with the volume that its entry states.
@@ -29,7 +29,7 @@ fn example(entry: &'static ShapeEntry, space: Space) -> Example {
         let value = middle(spec, &params);
         params.set(spec.key, value);
     }
-    let casting = Casting {
+    let request = AssemblyRequest {
         params: &params,
         space,
         mass: 0.1,
@@ -39,7 +39,7 @@ fn example(entry: &'static ShapeEntry, space: Space) -> Example {
     Example {
         name: format!("{} {space:?}", entry.name),
         volume: (entry.volume)(&params, space),
-        launchable: (entry.assembly)(&casting),
+        launchable: (entry.assembly)(&request),
     }
 }
 

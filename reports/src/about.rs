@@ -1,7 +1,7 @@
 //! What an effect is, as its registry says.
 
 use contact_laws::{self, find_grain_force};
-use diagnosis::beds::SWITCHES;
+use diagnosis::beds::BED_CANDIDATES;
 use resistive::find_resistance;
 
 /// An effect of no registry.
@@ -22,7 +22,7 @@ pub(crate) struct About {
 impl About {
     /// The effect `id`. Of a bed of grains, what the simulation has under this name comes before what a force law has.
     pub(crate) fn of(id: &str, is_of_a_bed: bool) -> Self {
-        let switch = SWITCHES.iter().find(|switch| is_of_a_bed && switch.id == id);
+        let switch = BED_CANDIDATES.iter().find(|switch| is_of_a_bed && switch.id == id);
         let listed = |summary: &str, law, source| Self {
             summary: summary.to_owned(),
             amplitude: switch.map(|switch| switch.amplitude),
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn what_a_bed_may_lack_is_described_by_its_registry() {
-        for switch in SWITCHES.iter() {
+        for switch in BED_CANDIDATES.iter() {
             let about = About::of(switch.id, true);
             assert_eq!(about.amplitude, Some(switch.amplitude), "{}", switch.id);
             assert_eq!(about.law.is_none(), switch.is_change(), "{}", switch.id);

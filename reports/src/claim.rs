@@ -143,7 +143,7 @@ pub(crate) fn misses(diagnosis: &Value) -> bool {
 const CLEAR: f64 = 3.0;
 
 /// The first of the ranking with its size, if the best of the candidates helps by more than chance.
-fn best_fit(diagnosis: &Value) -> Option<String> {
+pub(crate) fn best_fit(diagnosis: &Value) -> Option<String> {
     let best = list(&diagnosis["ranking"]).first().filter(|best| best["status"] == "ranked")?;
     let (q, se) = (best["q"].as_f64()?, best["se"].as_f64()?);
     let is_seen = diagnosis["p1"].as_f64()? <= ALPHA && q.abs() > CLEAR * se;

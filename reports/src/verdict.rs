@@ -35,7 +35,12 @@ pub fn verdict_in_words(diagnosis: &Value) -> String {
             let named = named_errors(&diagnosis["preparation"]);
             format!("explained by the preparation of the bed, no effect needed: {named}")
         }
-        Verdict::BelowNoise => "below what these data can show: no effect is named".to_owned(),
+        Verdict::BelowNoise => match claim::best_fit(diagnosis) {
+            Some(_) => {
+                "something is missing, and too small on held-out conditions to be named".to_owned()
+            }
+            None => "below what these data can show: no effect is named".to_owned(),
+        },
         Verdict::CannotTell => "cannot tell".to_owned(),
     }
 }

@@ -5,7 +5,7 @@ use super::error::ImpactError;
 use super::holding::accelerate;
 use super::impact::Impact;
 use super::modes::Modes;
-use super::observe::{Observer, Stretch};
+use super::observe::{Observer, SolverStep};
 
 /// Readings of an accelerometer at given times: the acceleration of the first part against gravity, upward (m/s²).
 /// It is 0 in free fall, and that of gravity at rest.
@@ -31,11 +31,11 @@ impl<'a> Accelerometer<'a> {
 }
 
 impl Observer for Accelerometer<'_> {
-    fn stretch(&mut self, stretch: &mut Stretch<'_, '_>) {
-        let to = stretch.to();
+    fn solver_step(&mut self, solver_step: &mut SolverStep<'_, '_>) {
+        let to = solver_step.to();
         while let Some(&time) = self.times.get(self.readings.len()).filter(|&&t| t <= to) {
-            let state = stretch.state(time);
-            let (acceleration, _) = accelerate(stretch.system, &state, stretch.modes);
+            let state = solver_step.state(time);
+            let (acceleration, _) = accelerate(solver_step.system, &state, solver_step.modes);
             self.readings.push(acceleration[1] + self.gravity);
         }
     }

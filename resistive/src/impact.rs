@@ -12,7 +12,7 @@ use super::fluid;
 use super::holding::{accelerate, is_held};
 use super::modes::{AXES, Modes};
 use super::motion::System;
-use super::observe::{Observer, Stretch};
+use super::observe::{Observer, SolverStep};
 use super::solver::{Plan, Solver, Tolerance};
 use super::{ResistanceLaw, Surroundings};
 use margin::{
@@ -240,9 +240,14 @@ impl Impact {
                     self.look(&mut solver, &system, (from, to), &before, &progress);
                 time = fired.as_ref().map_or(to, |fired| fired.time);
                 state = solver.at(time);
-                let mut stretch =
-                    Stretch { from, to: time, solver: &mut solver, system: &system, modes: &modes };
-                observer.stretch(&mut stretch);
+                let mut solver_step = SolverStep {
+                    from,
+                    to: time,
+                    solver: &mut solver,
+                    system: &system,
+                    modes: &modes,
+                };
+                observer.solver_step(&mut solver_step);
                 progress.top_speed = progress.top_speed.max(self.speed(&state));
                 before = Before { margins: after, fresh: false };
                 if let Some(fired) = fired {

@@ -31,11 +31,11 @@ pub use error::ImpactError;
 pub use felt::Accelerometer;
 pub use impact::{Effort, Ending, Impact, PartStop};
 pub use laws::{
-    Acts, Approach, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Kind,
-    Needs, OtherForm, OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry,
-    Role, STATE_VARIABLES, StateVariable, Twin, find_resistance, twins,
+    Acts, Approach, Coefficients, Confounder, Direction, Draft, Effect, Expression, Facts,
+    ForceError, Kind, Needs, OtherForm, OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS,
+    ResistanceEntry, Role, STATE_VARIABLES, StateVariable, confounders, find_resistance,
 };
-pub use observe::{Observer, Stretch, Trajectory};
+pub use observe::{Observer, SolverStep, Trajectory};
 pub use record::{PartSample, Recorder, Sample};
 pub use silhouette::{Silhouette, Space};
 pub use solver::Tolerance;
@@ -142,7 +142,7 @@ pub struct Load {
     /// −limit·direction component by component, and at rest anything within the limits.
     pub friction: Vec3,
     /// Limits of frictions that hold the horizontal and the vertical component each for itself.
-    pub grip: [Grip; 2],
+    pub grip: [FrictionLimits; 2],
     /// Whether there are such frictions at all.
     pub gripping: bool,
     /// Torque about y at the point of application (N m).
@@ -172,7 +172,7 @@ impl Load {
 
 /// Limits of a friction on one component (N), both positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grip {
+pub struct FrictionLimits {
     /// Against motion in the positive direction (up, or forward).
     pub positive: f64,
     /// Against motion in the negative direction.

@@ -8,14 +8,14 @@ use super::solver::Solver;
 /// Watches an impact.
 pub trait Observer {
     /// A stretch of smooth motion was integrated.
-    fn stretch(&mut self, stretch: &mut Stretch<'_, '_>);
+    fn solver_step(&mut self, solver_step: &mut SolverStep<'_, '_>);
 
     /// The impact is over; the body stays in `state`.
     fn end(&mut self, time: f64, state: &State);
 }
 
 /// A step of the solver, or the part of it up to an event.
-pub struct Stretch<'a, 'b> {
+pub struct SolverStep<'a, 'b> {
     pub(super) from: f64,
     pub(super) to: f64,
     pub(super) solver: &'a mut Solver<'b>,
@@ -23,7 +23,7 @@ pub struct Stretch<'a, 'b> {
     pub(super) modes: &'a Modes,
 }
 
-impl Stretch<'_, '_> {
+impl SolverStep<'_, '_> {
     /// Where it begins (s).
     #[must_use]
     pub fn from(&self) -> f64 {
@@ -64,9 +64,10 @@ impl<'a> Trajectory<'a> {
 }
 
 impl Observer for Trajectory<'_> {
-    fn stretch(&mut self, stretch: &mut Stretch<'_, '_>) {
-        while let Some(&time) = self.times.get(self.states.len()).filter(|&&t| t <= stretch.to) {
-            self.states.push(stretch.state(time));
+    fn solver_step(&mut self, solver_step: &mut SolverStep<'_, '_>) {
+        while let Some(&time) = self.times.get(self.states.len()).filter(|&&t| t <= solver_step.to)
+        {
+            self.states.push(solver_step.state(time));
         }
     }
 
@@ -77,6 +78,6 @@ impl Observer for Trajectory<'_> {
 
 /// Sees nothing: for runs of which only the end counts.
 impl Observer for () {
-    fn stretch(&mut self, _: &mut Stretch<'_, '_>) {}
+    fn solver_step(&mut self, _: &mut SolverStep<'_, '_>) {}
     fn end(&mut self, _: f64, _: &State) {}
 }

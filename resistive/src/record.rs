@@ -6,7 +6,7 @@ use super::assembly::{PARTS, Part, State};
 use super::holding::accelerate;
 use super::modes::{AXES, Modes};
 use super::motion::{Loaded, System};
-use super::observe::{Observer, Stretch};
+use super::observe::{Observer, SolverStep};
 use super::{Flow, Impact, Load, Motion};
 use engine::ledger::{ChannelKind, Ledger, Term, TermKind};
 use engine::math::Vec3;
@@ -146,11 +146,11 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
     }
 
     /// Adds the work of the laws from `from` to `to` (s).
-    fn integrate(&mut self, stretch: &mut Stretch<'_, '_>, from: f64, to: f64) {
+    fn integrate(&mut self, solver_step: &mut SolverStep<'_, '_>, from: f64, to: f64) {
         let half = 0.5 * (to - from);
         for (node, weight) in NODES {
-            let state = stretch.state(from + half * (1.0 + node));
-            let (system, modes) = (stretch.system, stretch.modes);
+            let state = solver_step.state(from + half * (1.0 + node));
+            let (system, modes) = (solver_step.system, solver_step.modes);
             for part in 0..system.assembly.n_parts() {
                 let Self { entries, work, given, .. } = self;
                 let mut added = Vec::with_capacity(system.laws.len());
@@ -228,20 +228,20 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
 }
 
 impl<F: FnMut(&Sample<'_>)> Observer for Recorder<'_, F> {
-    fn stretch(&mut self, stretch: &mut Stretch<'_, '_>) {
-        let (mut from, to) = (stretch.from(), stretch.to());
+    fn solver_step(&mut self, solver_step: &mut SolverStep<'_, '_>) {
+        let (mut from, to) = (solver_step.from(), solver_step.to());
         loop {
             let next = self.number as f64 * self.interval;
             if next > to {
                 break;
             }
-            self.integrate(stretch, from, next);
-            let state = stretch.state(next);
-            let (system, modes) = (stretch.system, stretch.modes);
+            self.integrate(solver_step, from, next);
+            let state = solver_step.state(next);
+            let (system, modes) = (solver_step.system, solver_step.modes);
             self.sample(system, next, &state, modes);
             from = next;
         }
-        self.integrate(stretch, from, to);
+        self.integrate(solver_step, from, to);
     }
 
     fn end(&mut self, time: f64, state: &State) {

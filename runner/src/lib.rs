@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 pub use elsewhere::{Elsewhere, ModelText, Task, WORD, work};
 pub use error::CampaignError;
-pub use workers::{Heed, Progress, Stage, Unattended, Watch, Workers};
+pub use workers::{Progress, Stage, Unattended, Watch, WorkerSignals, Workers};
 
 /// The folder of prepared beds and finished impacts: the one `asked` for, else `$PLUNGE_CACHE`, else `runs/.cache`.
 #[must_use]

@@ -60,15 +60,15 @@ impl Watch for Unattended {
     }
 }
 
-/// What a worker heeds.
-pub struct Heed<'a> {
+/// What a worker listens to and tells.
+pub struct WorkerSignals<'a> {
     /// Whether to stop.
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Takes what the user should know.
     pub warn: &'a (dyn Fn(&str) + Sync),
 }
 
-impl Control for Heed<'_> {
+impl Control for WorkerSignals<'_> {
     fn progress(&mut self, _: &run::Progress) {}
 
     fn warn(&mut self, message: &str) {
@@ -80,7 +80,7 @@ impl Control for Heed<'_> {
     }
 }
 
-impl Heed<'static> {
+impl WorkerSignals<'static> {
     /// Nothing stops it, and what the user should know goes to stderr.
     #[must_use]
     pub fn unattended() -> Self {
@@ -135,10 +135,10 @@ impl Workers<'_> {
                         let place = next.fetch_add(1, Ordering::Relaxed);
                         let Some(&at) = tasks.get(place) else { break };
                         let warn = |message: &str| self.watch.warn(message);
-                        let mut heed = Heed { stop: &stop, warn: &warn };
+                        let mut signals = WorkerSignals { stop: &stop, warn: &warn };
                         let result = match stop() {
                             true => Err(CampaignError::Interrupted),
-                            false => with_threads(1, || task(at, &mut heed))
+                            false => with_threads(1, || task(at, &mut signals))
                                 .map_err(CampaignError::from)
                                 .flatten(),
                         };

@@ -1,8 +1,8 @@
 //! A few worlds of the benchmark of the diagnosis, with claims that can fail.
 
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::calibrate::{self, calibrate};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::missing_force::{Reading, missing_force};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
@@ -102,9 +102,9 @@ fn a_force_across_the_motion_is_found_where_it_is() {
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(&set);
     let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let fitted = bench.fit(&Point::start(&forward)).expect("spheres stop");
-    let missing = missing_force(&bench, &fitted, None).expect("spheres stop").expect("a force");
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let fitted = problem.fit(&Point::start(&forward)).expect("spheres stop");
+    let missing = missing_force(&problem, &fitted, None).expect("spheres stop").expect("a force");
     let lift = nature.hidden[0].1;
     let deep = |one: &&Reading| one.depth > set.conditions[one.condition].diameter;
     let oblique = |one: &&Reading| one.sideways.is_some();
@@ -152,8 +152,8 @@ fn without_frames_before_impact_friction_of_the_guide_is_one_of_several() {
     let diagnosed = |set: &MeasurementSet| {
         let observed = Observed::of(set);
         let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it fits");
-        let bench = Bench { set, observed: &observed, forward: &forward };
-        diagnose(&bench, DEFAULT_SEED).expect("spheres stop")
+        let problem = FitProblem { set, observed: &observed, forward: &forward };
+        diagnose(&problem, DEFAULT_SEED).expect("spheres stop")
     };
     let told = diagnosed(&with_frames);
     assert_eq!(told.effects, ["rail-friction"], "{:?} {:?}", told.verdict, told.unexplained);
@@ -170,8 +170,8 @@ fn before(imperfection: Imperfection, hidden: Vec<Hidden>, seed: u64) -> Diagnos
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(&set);
     let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    diagnose(&bench, DEFAULT_SEED).expect("spheres stop")
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    diagnose(&problem, DEFAULT_SEED).expect("spheres stop")
 }
 
 #[test]
@@ -237,8 +237,8 @@ fn what_is_known_of_a_coefficient_beforehand_holds_it_and_narrows_it() {
         }));
         let observed = Observed::of(&set);
         let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
-        let bench = Bench { set: &set, observed: &observed, forward: &forward };
-        let fit = bench.fit(&Point::start(&forward)).expect("spheres stop").fit;
+        let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+        let fit = problem.fit(&Point::start(&forward)).expect("spheres stop").fit;
         (fit.point.parameters[0], fit.standard_error(0).expect("it is free"))
     };
     let (free, se) = drag(None);
@@ -259,10 +259,10 @@ fn simulated_sets_of_a_design_are_diagnosed_and_counted() {
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(&set);
     let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let diagnosis = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
     let size = calibrate::Size { others: 3, listed: 1 };
-    let found = calibrate(&bench, &diagnosis, size, DEFAULT_SEED).expect("it can be simulated");
+    let found = calibrate(&problem, &diagnosis, size, DEFAULT_SEED).expect("it can be simulated");
     let of = |truth: &str| found.sets.iter().filter(|set| set.truth == truth).collect::<Vec<_>>();
     assert_eq!((of("nothing").len(), of("unlisted").len()), (3, 3));
     // One null in a hundred leads to a name.

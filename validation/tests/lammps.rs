@@ -29,7 +29,7 @@ fn a_bed_that_lammps_rains_and_hits_is_as_deep_as_one_of_plunge_and_rolling_make
         case.measured(&place, Some((&lammps, &worlds))).expect("impacts").1
     };
     let [own, other] = [false, true].map(|by_lammps| measured(Hidden::Nothing, by_lammps));
-    let rolling = measured(Hidden::Switch("rolling-resistance", 0.25), true);
+    let rolling = measured(Hidden::BedCandidate("rolling-resistance", 0.25), true);
     let packing = |set: &MeasurementSet| set.bed.stated.packing_fraction.expect("it was weighed");
     // Two weighings of three beds each: 0.003 of either, and as much again between three beds and the next three.
     assert!(

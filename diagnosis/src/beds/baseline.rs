@@ -14,10 +14,10 @@ use nalgebra::{DMatrix, DVector};
 use runner::beds::Record;
 use thiserror::Error;
 
+use super::bed_model::BedModel;
 use super::modes::Modes;
 use super::observables::observables;
-use super::stand::Stand;
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::forward::{Forward, Moment, Passages, PredictError, Request, Scatter};
 use crate::noise::Noise;
 use crate::observable::Layout;
@@ -37,7 +37,7 @@ pub enum BaselineError {
     Forward(#[from] ForwardError),
     /// It cannot be fitted to the runs.
     #[error("the runs of the model are not like an impact: {0}")]
-    Bench(#[from] BenchError),
+    FitProblem(#[from] FitError),
     /// It does not load; a mistake of ours.
     #[error(transparent)]
     Config(#[from] configs::ConfigError),
@@ -77,12 +77,12 @@ pub(super) struct Baseline {
 impl Baseline {
     /// Of `runs`, one list per condition of the set, empty for those that were not run.
     pub(super) fn of(
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         layouts: &[Layout],
         runs: &[Vec<Record>],
     ) -> Result<Self, BaselineError> {
         let instrument = Instrument::default().without_shared_errors();
-        let set = MeasurementSet { instrument, ..stand.set.clone() };
+        let set = MeasurementSet { instrument, ..bed_model.set.clone() };
         // Conditions without runs are not looked at, if there are others.
         let none = runs.iter().all(Vec::is_empty);
         if let Some(at) = runs.iter().position(|runs| none || runs.len() == 1) {
@@ -97,8 +97,8 @@ impl Baseline {
         let forward = ResistiveForward::new(&law, &set, &of_law)?;
         let answered = layouts.iter().map(|one| (one.len() - one.craters(), one.len())).collect();
         let paths = as_measured(&set, &of_law, runs);
-        let bench = Bench { set: &set, observed: &paths, forward: &forward };
-        let fitted = bench.fit_from(&Point::start(&forward), &Noise::guess(&instrument))?;
+        let problem = FitProblem { set: &set, observed: &paths, forward: &forward };
+        let fitted = problem.fit_from(&Point::start(&forward), &Noise::guess(&instrument))?;
         let modes = Modes::of(&observed);
         let mut spread = vec![DMatrix::zeros(0, 0); observed.conditions.len()];
         let (mut scatter, mut whole) = (0.0, 0.0);

@@ -8,11 +8,11 @@ use engine::contact::Partner;
 use engine::grains::Space;
 use resistive::Kind;
 
-use super::switch::{Act, Switch};
+use super::bed_candidate::{Act, BedCandidate};
 use super::variation::Variation;
 
 /// Every one of them, in the order of the docs.
-pub(super) const CHANGES: &[Switch] = &[
+pub(super) const CHANGES: &[BedCandidate] = &[
     GRAIN_FRICTION,
     INTRUDER_FRICTION,
     WALL_FRICTION,
@@ -26,7 +26,7 @@ pub(super) const CHANGES: &[Switch] = &[
     GRAIN_INERTIA,
 ];
 
-const GRAIN_FRICTION: Switch = Switch {
+const GRAIN_FRICTION: BedCandidate = BedCandidate {
     id: "grain-friction",
     kind: Kind::Physics,
     amplitude: "relative change of contact_law.friction during the impact",
@@ -41,7 +41,7 @@ const GRAIN_FRICTION: Switch = Switch {
     },
 };
 
-const INTRUDER_FRICTION: Switch = Switch {
+const INTRUDER_FRICTION: BedCandidate = BedCandidate {
     id: "intruder-friction",
     kind: Kind::Physics,
     amplitude: "relative change of contact_law.intruder_friction",
@@ -56,7 +56,7 @@ const INTRUDER_FRICTION: Switch = Switch {
     },
 };
 
-const WALL_FRICTION: Switch = Switch {
+const WALL_FRICTION: BedCandidate = BedCandidate {
     id: "wall-friction",
     kind: Kind::Physics,
     amplitude: "relative change of contact_law.wall_friction during the impact",
@@ -71,7 +71,7 @@ const WALL_FRICTION: Switch = Switch {
     },
 };
 
-const RESTITUTION: Switch = Switch {
+const RESTITUTION: BedCandidate = BedCandidate {
     id: "restitution",
     kind: Kind::Physics,
     amplitude: "relative change of the damping of normal contacts, of −ln e of each pair",
@@ -101,7 +101,7 @@ const RESTITUTION: Switch = Switch {
     },
 };
 
-const PACKING: Switch = Switch {
+const PACKING: BedCandidate = BedCandidate {
     id: "packing",
     kind: Kind::Preparation,
     amplitude: "share of bed.preparation_friction that is taken away: a denser bed",
@@ -123,7 +123,7 @@ const PACKING: Switch = Switch {
     },
 };
 
-const INFLATED: Switch = Switch {
+const INFLATED: BedCandidate = BedCandidate {
     id: "inflated",
     kind: Kind::Preparation,
     amplitude: "packing fraction gained by growing grains in place before they fall",
@@ -148,7 +148,7 @@ const INFLATED: Switch = Switch {
     },
 };
 
-const POLYDISPERSITY: Switch = Switch {
+const POLYDISPERSITY: BedCandidate = BedCandidate {
     id: "polydispersity",
     kind: Kind::Preparation,
     amplitude: "standard deviation of the logarithm of diameters",
@@ -173,7 +173,7 @@ const POLYDISPERSITY: Switch = Switch {
     },
 };
 
-const GRAIN_DENSITY: Switch = Switch {
+const GRAIN_DENSITY: BedCandidate = BedCandidate {
     id: "grain-density",
     kind: Kind::Physics,
     amplitude: "relative change of the mass of grains, which settle with it",
@@ -188,7 +188,7 @@ const GRAIN_DENSITY: Switch = Switch {
     },
 };
 
-const GRAIN_STIFFNESS: Switch = Switch {
+const GRAIN_STIFFNESS: BedCandidate = BedCandidate {
     id: "grain-stiffness",
     kind: Kind::Physics,
     amplitude: "relative change of the stiffness of contacts, in the bed too; restitution stays",
@@ -229,7 +229,7 @@ const STIFFNESSES: [(&str, f64); 8] = [
     ("viscous_time", -0.4),
 ];
 
-const TANGENTIAL_DAMPING: Switch = Switch {
+const TANGENTIAL_DAMPING: BedCandidate = BedCandidate {
     id: "tangential-damping",
     kind: Kind::Physics,
     amplitude: "relative change of the damping of tangential contacts",
@@ -250,7 +250,7 @@ const TANGENTIAL_DAMPING: Switch = Switch {
     },
 };
 
-const GRAIN_INERTIA: Switch = Switch {
+const GRAIN_INERTIA: BedCandidate = BedCandidate {
     id: "grain-inertia",
     kind: Kind::Physics,
     amplitude: "relative change of the moment of inertia of grains; - 0.2 has discs turn as spheres do",

@@ -1,4 +1,4 @@
-//! Whether the signature of a switch is clearer than that of one that does nothing.
+//! Whether the signature of a candidate is clearer than that of one that does nothing.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2};
 use rand_pcg::Pcg64;
@@ -8,12 +8,12 @@ use super::response::{BetweenDraws, Response};
 use crate::projection::Basis;
 use crate::random::{Purpose, normal, stream};
 
-/// Switches that do nothing and are drawn, and the share of them that a signature has to exceed.
+/// Candidates that do nothing and are drawn, and the share of them that a signature has to exceed.
 const NOTHING: usize = 200;
 const RARE: f64 = 0.98;
 
-/// Why the `responses` to the amplitude `q`, found by so many `runs`, cannot be told from those of a switch that does
-/// nothing; `None` where they can. Switches that do nothing are drawn, as many draws of a bed as were run, and go through
+/// Why the `responses` to the amplitude `q`, found by so many `runs`, cannot be told from those of a candidate that does
+/// nothing; `None` where they can. Candidates that do nothing are drawn, as many draws of a bed as were run, and go through
 /// the same formula.
 pub(super) fn lost(
     (responses, q): (&[Option<Response>], f64),
@@ -53,7 +53,7 @@ fn clearness((responses, q): (&[Option<Response>], f64), baseline: &Baseline) ->
     (signal - freedom) / (2.0 * freedom).sqrt().max(1.0)
 }
 
-/// Responses to the amplitude `q` of a switch that does nothing, known from as many draws as `responses` are.
+/// Responses to the amplitude `q` of a candidate that does nothing, known from as many draws as `responses` are.
 fn of_nothing(
     (responses, q): (&[Option<Response>], f64),
     baseline: &Baseline,
@@ -89,7 +89,7 @@ fn of_nothing(
     drawn
 }
 
-/// Why a switch cannot be tested whose signature is `clear` times as clear as that of one that does nothing may be.
+/// Why a candidate cannot be tested whose signature is `clear` times as clear as that of one that does nothing may be.
 fn not_seen(clear: f64, runs: usize) -> String {
     let factor = 1.0 / clear.max(0.25);
     format!(

@@ -5,14 +5,14 @@ use nalgebra::DVector;
 use runner::beds::Record;
 use serde_json::{Value, json};
 
+use super::bed_model::BedModel;
 use super::emulator::BedForward;
 use super::error::BedError;
 use super::observables::observables;
-use super::stand::Stand;
-use crate::bench::BenchError;
 use crate::error_unit::Unit;
 use crate::errors::Sums;
 use crate::fit::Fit;
+use crate::fit_problem::FitError;
 use crate::held_out::{Fails, HeldOut, LeftOut, NotPredicted};
 use crate::noise_floor::standard_errors;
 use crate::observed::Observed;
@@ -42,11 +42,11 @@ pub struct Channel {
 }
 
 impl Confirmation {
-    /// Of `runs` under `conditions`: those of the model as it is, and those with the switches of a model on, condition
+    /// Of `runs` under `conditions`: those of the model as it is, and those with the candidates of a model on, condition
     /// after condition; what all runs share in the two models, and what an effect of a force law does, is added by
     /// `fits`.
     pub(super) fn of(
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         measured: &Observed,
         (forward, fits): (&BedForward, [&Fit; 2]),
         (conditions, runs): (&[usize], [&[Option<Record>]; 2]),
@@ -55,14 +55,14 @@ impl Confirmation {
         let (mut gain, mut judged, mut not_predicted) = (0.0, 0, Vec::new());
         for (at, &condition) in conditions.iter().enumerate() {
             let observed = &measured.conditions[condition];
-            let of_set = &stand.set.conditions[condition];
+            let of_set = &bed_model.set.conditions[condition];
             let means: Vec<Option<Mean>> = runs
                 .iter()
                 .map(|runs| {
                     let n = runs.len() / conditions.len();
                     let numbers = runs[at * n..(at + 1) * n].iter().flatten();
-                    let numbers =
-                        numbers.map(|run| observables(run, &observed.layout, of_set, stand.set));
+                    let numbers = numbers
+                        .map(|run| observables(run, &observed.layout, of_set, bed_model.set));
                     Mean::of(&numbers.collect::<Vec<_>>())
                 })
                 .collect();
@@ -75,7 +75,7 @@ impl Confirmation {
             };
             judged += 1;
             let beside = |point: &Point| -> Result<_, BedError> {
-                Ok(forward.beside_the_bed(condition, point).map_err(BenchError::from)?)
+                Ok(forward.beside_the_bed(condition, point).map_err(FitError::from)?)
             };
             let [before, after] = fits.map(|fit| &fit.point);
             let errors = [
@@ -91,7 +91,7 @@ impl Confirmation {
                 sums.add(observed, error);
             }
         }
-        let unit = Unit::of(stand.set.kind);
+        let unit = Unit::of(bed_model.set.kind);
         let [before, after, noise_floor] = sums.map(|sums| unit.pick(&sums.errors()));
         let [.., explained] = HeldOut::share(before, after, noise_floor);
         let held_out = HeldOut {

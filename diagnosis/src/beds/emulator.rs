@@ -6,12 +6,12 @@ use measurements::MeasurementSet;
 use serde_json::{Value, json};
 
 use super::baseline::Baseline;
+use super::bed_candidate::BedCandidate;
+use super::bed_candidates::are_alike_below;
 use super::clarity::lost;
 use super::preparation::is_far;
 use super::response::Response;
 use super::shared::Shared;
-use super::switch::Switch;
-use super::switches::are_alike_below;
 use crate::fit::Fit;
 use crate::forward::{
     Candidate, Forward, Moment, Parameter, ParameterKind, Passages, PredictError, Request, Scatter,
@@ -30,9 +30,9 @@ const SEARCHED: f64 = 1.5;
 /// A derivative by an amplitude is taken over this share of the one that is screened.
 const STEP: f64 = 1e-2;
 
-/// A switch, and what was found of it.
+/// A candidate, and what was found of it.
 pub(super) struct Screened {
-    pub(super) switch: &'static Switch,
+    pub(super) bed_candidate: &'static BedCandidate,
     /// One per condition of the set; none for those that were not run.
     pub(super) responses: Vec<Option<Response>>,
     /// Least and greatest amplitude that the responses are good for.
@@ -44,7 +44,7 @@ pub(super) struct Screened {
 /// What an index of the statistics means.
 #[derive(Clone, Copy)]
 enum Source {
-    Switch(usize),
+    BedCandidate(usize),
     /// Index of a candidate of the force law that stands in.
     Apparatus(usize),
 }
@@ -83,7 +83,7 @@ impl BedForward {
         forward
     }
 
-    /// With what was `screened`: switches whose id is in `free` are parameters of the model, the others candidates beside
+    /// With what was `screened`: candidates whose id is in `free` are parameters of the model, the others candidates beside
     /// those of the force law that are named in `apparatus`.
     pub(super) fn with(
         mut self,
@@ -91,10 +91,10 @@ impl BedForward {
         free: &[String],
         apparatus: &[&str],
     ) -> Self {
-        let is_free = |one: &Screened| free.iter().any(|id| id == one.switch.id);
+        let is_free = |one: &Screened| free.iter().any(|id| id == one.bed_candidate.id);
         let (parameters, others): (Vec<usize>, Vec<usize>) =
             (0..screened.len()).partition(|&at| is_free(&screened[at]));
-        self.sources = others.into_iter().map(Source::Switch).collect();
+        self.sources = others.into_iter().map(Source::BedCandidate).collect();
         let of_law = self.baseline.stand_in.forward.candidates().iter().enumerate();
         let named = of_law.filter(|(_, one)| apparatus.contains(&one.id.as_str()));
         self.sources.extend(named.map(|(at, _)| Source::Apparatus(at)));
@@ -108,7 +108,7 @@ impl BedForward {
         let parameter = |&at: &usize| {
             let one = &self.screened[at];
             let (min, max) = one.range;
-            let name = one.switch.id.to_owned();
+            let name = one.bed_candidate.id.to_owned();
             Parameter {
                 name,
                 unit: String::new(),
@@ -120,7 +120,7 @@ impl BedForward {
             }
         };
         let candidate = |source: &Source| match *source {
-            Source::Switch(at) => self.screened[at].candidate(),
+            Source::BedCandidate(at) => self.screened[at].candidate(),
             Source::Apparatus(at) => {
                 let of_law = self.baseline.stand_in.forward.candidates()[at].clone();
                 let not_testable = match self.baseline.stand_in.answers_any() {
@@ -144,15 +144,15 @@ impl BedForward {
         (self.parameters, self.candidates) = (parameters, candidates);
     }
 
-    /// The switch behind candidate `candidate`; none for what the apparatus does.
-    pub(super) fn switch(&self, candidate: usize) -> Option<usize> {
+    /// The candidate behind candidate `candidate`; none for what the apparatus does.
+    pub(super) fn bed_candidate(&self, candidate: usize) -> Option<usize> {
         match self.sources[candidate] {
-            Source::Switch(at) => Some(at),
+            Source::BedCandidate(at) => Some(at),
             Source::Apparatus(_) => None,
         }
     }
 
-    /// The switches that stand for the parameters, in their order.
+    /// The candidates that stand for the parameters, in their order.
     pub(super) fn free(&self) -> &[usize] {
         &self.free
     }
@@ -165,7 +165,7 @@ impl BedForward {
         &self.baseline
     }
 
-    /// Puts what a line search over amplitudes of `tried` found of switch `at` in place of what screening had
+    /// Puts what a line search over amplitudes of `tried` found of candidate `at` in place of what screening had
     /// found.
     pub(super) fn refine(
         &mut self,
@@ -173,7 +173,7 @@ impl BedForward {
         responses: Vec<Option<Response>>,
         tried: (f64, f64),
     ) {
-        let (min, max) = self.screened[at].switch.range;
+        let (min, max) = self.screened[at].bed_candidate.range;
         let largest = if tried.1 > -tried.0 { tried.1 } else { tried.0 };
         let runs = responses.iter().flatten().map(|one| one.deviations.len()).sum();
         self.screened[at].not_testable = lost((&responses, largest), &self.baseline, runs);
@@ -182,7 +182,7 @@ impl BedForward {
         self.describe();
     }
 
-    /// Makes every switch testable with what is known of it. Gives the index of each that is lost in the scatter, with the
+    /// Makes every candidate testable with what is known of it. Gives the index of each that is lost in the scatter, with the
     /// reason.
     pub(super) fn take_at_face_value(&mut self) -> Vec<(usize, String)> {
         let screened = self.screened.iter_mut().enumerate();
@@ -191,7 +191,7 @@ impl BedForward {
         lost
     }
 
-    /// Makes the switches `lost`, given by index and reason, untestable again.
+    /// Makes the candidates `lost`, given by index and reason, untestable again.
     pub(super) fn give_up(&mut self, lost: Vec<(usize, String)>) {
         for (at, why) in lost {
             self.screened[at].not_testable = Some(why);
@@ -239,11 +239,11 @@ impl BedForward {
         noise_floor(observed, &observed.fit).to_json()
     }
 
-    /// The names of those of `effects` that are switches of the simulation.
+    /// The names of those of `effects` that are candidates of the simulation.
     #[must_use]
     pub fn of_the_bed(&self, effects: &[(usize, f64)]) -> Vec<&'static str> {
-        let switches = effects.iter().filter_map(|&(index, _)| self.switch(index));
-        switches.map(|at| self.screened[at].switch.id).collect()
+        let bed_candidates = effects.iter().filter_map(|&(index, _)| self.bed_candidate(index));
+        bed_candidates.map(|at| self.screened[at].bed_candidate.id).collect()
     }
 
     /// What all runs share at `point`, and its effects of the force law, change of the observables; any condition of the
@@ -293,47 +293,47 @@ impl BedForward {
             .iter()
             .filter_map(|&(index, q)| match self.sources[index] {
                 Source::Apparatus(at) => Some((at, q)),
-                Source::Switch(_) => None,
+                Source::BedCandidate(_) => None,
             })
             .collect();
         self.baseline.stand_in.response(condition, &of_law, scatter)
     }
 
-    /// The switches at work, as (index in `screened`, q).
+    /// The candidates at work, as (index in `screened`, q).
     fn at_work<'a>(
         &'a self,
         parameters: &'a [f64],
         effects: &'a [(usize, f64)],
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
         let of_model = self.free.iter().copied().zip(parameters.iter().copied());
-        let added = effects.iter().filter_map(|&(index, q)| Some((self.switch(index)?, q)));
+        let added = effects.iter().filter_map(|&(index, q)| Some((self.bed_candidate(index)?, q)));
         of_model.chain(added)
     }
 }
 
 impl Screened {
-    /// `switch` as it was screened.
+    /// `bed_candidate` as it was screened.
     pub(super) fn new(
-        switch: &'static Switch,
+        bed_candidate: &'static BedCandidate,
         responses: Vec<Option<Response>>,
         not_testable: Option<String>,
     ) -> Self {
-        let (min, max) = switch.range;
-        let reach = SCREENED * switch.screen;
-        Self { switch, responses, range: (min.max(-reach), max.min(reach)), not_testable }
+        let (min, max) = bed_candidate.range;
+        let reach = SCREENED * bed_candidate.screen;
+        Self { bed_candidate, responses, range: (min.max(-reach), max.min(reach)), not_testable }
     }
 
     fn candidate(&self) -> Candidate {
         let (min, max) = self.range;
         Candidate {
-            id: self.switch.id.to_owned(),
+            id: self.bed_candidate.id.to_owned(),
             unit: "1".to_owned(),
             min,
             max,
             usual: None,
-            step: STEP * self.switch.screen,
+            step: STEP * self.bed_candidate.screen,
             not_testable: self.not_testable.clone(),
-            separable_from: self.switch.separable_from.to_owned(),
+            separable_from: self.bed_candidate.separable_from.to_owned(),
             form: Vec::new(),
             unresolved: Vec::new(),
         }
@@ -372,12 +372,13 @@ impl Forward for BedForward {
         if shared.iter().any(|value| *value != 0.0) {
             predicted += self.shared.change(condition, shared);
         }
-        let of_law = |&(index, q): &(usize, f64)| q != 0.0 && self.switch(index).is_none();
+        let of_law = |&(index, q): &(usize, f64)| q != 0.0 && self.bed_candidate(index).is_none();
         if !at.scatter.is_still() || at.effects.iter().any(of_law) {
             predicted += self.respond(condition, at.effects, at.scatter)?;
         }
-        for (switch, q) in self.at_work(at.parameters, at.effects).filter(|(_, q)| *q != 0.0) {
-            let response = self.screened[switch].responses[condition].as_ref();
+        for (bed_candidate, q) in self.at_work(at.parameters, at.effects).filter(|(_, q)| *q != 0.0)
+        {
+            let response = self.screened[bed_candidate].responses[condition].as_ref();
             predicted += response.ok_or_else(missing)?.at(q);
         }
         Ok(predicted.as_slice().to_vec())
@@ -389,8 +390,8 @@ impl Forward for BedForward {
             return None;
         }
         let spread = &self.baseline.spread[condition];
-        let of_effects = self.at_work(&[], effects).filter_map(|(switch, q)| {
-            let response = self.screened[switch].responses[condition].as_ref()?;
+        let of_effects = self.at_work(&[], effects).filter_map(|(bed_candidate, q)| {
+            let response = self.screened[bed_candidate].responses[condition].as_ref()?;
             Some(response.covariance_at(q, spread))
         });
         let of_means = spread / runs as f64 + self.shared.unknown(condition);
@@ -412,7 +413,7 @@ impl Forward for BedForward {
 }
 
 impl Passages for BedForward {
-    /// By the force law that stands in: what switches change of the force along a path is not known.
+    /// By the force law that stands in: what candidates change of the force along a path is not known.
     fn passage(
         &self,
         condition: usize,

@@ -4,15 +4,15 @@ use runner::CampaignError;
 use thiserror::Error;
 
 use super::baseline::BaselineError;
-use super::stand::StandError;
-use crate::bench::BenchError;
+use super::bed_model::BedModelError;
+use crate::fit_problem::FitError;
 
 /// Why there is no comparison or diagnosis.
 #[derive(Debug, Error)]
 pub enum BedError {
     /// The model and the set do not fit each other.
     #[error(transparent)]
-    Stand(#[from] StandError),
+    BedModel(#[from] BedModelError),
     /// The impacts were not run to the end.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
@@ -21,7 +21,7 @@ pub enum BedError {
     Baseline(#[from] BaselineError),
     /// The statistics fail.
     #[error(transparent)]
-    Bench(#[from] BenchError),
+    FitProblem(#[from] FitError),
     /// The bed of the set is many times heavier or lighter than that of the model.
     #[error(
         "the set states a bulk density of {stated} {unit}, and the bed of the model has {own:.4} {unit}: the stated number \

@@ -4,14 +4,14 @@ use configs::Change;
 use measurements::MeasurementSet;
 use serde_json::{Value, json};
 
+use super::bed_model::{BedModel, Draw};
 use super::confirmation::Confirmation;
 use super::emulator::BedForward;
 use super::located::Located;
 use super::plan::Plan;
-use super::stand::{Draw, Stand};
 use super::variation::Variation;
-use crate::bench::{Bench, BenchError};
 use crate::diagnose::seek_missing_force;
+use crate::fit_problem::{FitError, FitProblem};
 use crate::fitted_parameters::parameters;
 use crate::observed::Observed;
 use crate::rounding::rounded;
@@ -38,12 +38,16 @@ pub struct BedDiagnosis {
     pub(super) changes: Vec<Change>,
 }
 
-/// The model with the switches of `point` at their amplitudes.
-pub(super) fn change_at(stand: &Stand<'_>, forward: &BedForward, point: &Point) -> Variation {
+/// The model with the candidates of `point` at their amplitudes.
+pub(super) fn change_at(
+    bed_model: &BedModel<'_>,
+    forward: &BedForward,
+    point: &Point,
+) -> Variation {
     let parameters = forward.free().iter().copied().zip(point.parameters.iter().copied());
-    let effects = point.effects.iter().filter_map(|&(at, q)| Some((forward.switch(at)?, q)));
+    let effects = point.effects.iter().filter_map(|&(at, q)| Some((forward.bed_candidate(at)?, q)));
     parameters.chain(effects).fold(Variation::default(), |all, (at, q)| {
-        all.and(forward.screened()[at].switch.change(stand.grains(), q))
+        all.and(forward.screened()[at].bed_candidate.change(bed_model.grains(), q))
     })
 }
 
@@ -53,36 +57,36 @@ impl BedDiagnosis {
     ///
     /// # Errors
     /// If the force law that stands in for the bed fails.
-    pub fn seek_missing_force(&mut self, set: &MeasurementSet) -> Result<(), BenchError> {
-        let bench = Bench { set, observed: &self.observed, forward: &self.forward };
-        seek_missing_force(&bench, &mut self.diagnosis)
+    pub fn seek_missing_force(&mut self, set: &MeasurementSet) -> Result<(), FitError> {
+        let problem = FitProblem { set, observed: &self.observed, forward: &self.forward };
+        seek_missing_force(&problem, &mut self.diagnosis)
     }
 
     /// The diagnosis as one JSON object, with what was learned of the beds.
     ///
     /// # Errors
     /// Never for a diagnosis that this crate made.
-    pub fn to_json(&self, stand: &Stand<'_>) -> serde_json::Result<Value> {
+    pub fn to_json(&self, bed_model: &BedModel<'_>) -> serde_json::Result<Value> {
         let mut object = self.diagnosis.to_json()?;
         object["bed"] = json!({
-            "scatter": self.forward.scatter(stand.set),
+            "scatter": self.forward.scatter(bed_model.set),
             "correlation_on_one_draw": self.correlation.map(rounded),
-            "force_law": self.located(stand),
-            "seeds": self.seeds(stand),
+            "force_law": self.located(bed_model),
+            "seeds": self.seeds(bed_model),
         });
         object["ledger"] = self.confirmation.as_ref().map_or(Value::Null, Confirmation::ledger);
-        object["cost"] = json!({ "impacts": self.impacts, "plan": self.plan.to_json(stand) });
+        object["cost"] = json!({ "impacts": self.impacts, "plan": self.plan.to_json(bed_model) });
         Ok(object)
     }
 
-    /// The model with the switches of each effect that is worth adding, as a name and a model file; what the
+    /// The model with the candidates of each effect that is worth adding, as a name and a model file; what the
     /// apparatus does is no part of a bed.
     ///
     /// # Errors
     /// If a change does not give a valid model.
     pub fn proposals(
         &self,
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
     ) -> Result<Vec<(String, String)>, configs::ConfigError> {
         let named = &self.diagnosis;
         let points: Vec<Point> = match named.verdict {
@@ -98,16 +102,16 @@ impl BedDiagnosis {
             _ => Vec::new(),
         };
         let mut proposals = Vec::new();
-        let prepared = stand.grains().with(&self.changes)?;
-        let Ok(stand) = &Stand::new(&prepared, stand.set) else { return Ok(proposals) };
+        let prepared = bed_model.grains().with(&self.changes)?;
+        let Ok(bed_model) = &BedModel::new(&prepared, bed_model.set) else { return Ok(proposals) };
         if !self.changes.is_empty() {
-            let text = stand.proposal(&Variation::default())?;
+            let text = bed_model.proposal(&Variation::default())?;
             proposals.push(("model+preparation.toml".to_owned(), text));
         }
         for point in points {
             let ids = self.forward.of_the_bed(&point.effects);
             if !ids.is_empty() {
-                let text = stand.proposal(&change_at(stand, &self.forward, &point))?;
+                let text = bed_model.proposal(&change_at(bed_model, &self.forward, &point))?;
                 proposals.push((format!("model+{}.toml", ids.join("+")), text));
             }
         }
@@ -116,22 +120,23 @@ impl BedDiagnosis {
 
     /// The terms of the force law that comes nearest to the runs of the model, and those by which measurements differ
     /// from them, whatever it is by.
-    fn located(&self, stand: &Stand<'_>) -> Value {
+    fn located(&self, bed_model: &BedModel<'_>) -> Value {
         let baseline = self.forward.baseline();
         let law = &baseline.stand_in.forward;
         let of_the_model = parameters(law, &baseline.fitted.fit);
-        let bench = Bench { set: stand.set, observed: &self.observed, forward: &self.forward };
+        let problem =
+            FitProblem { set: bed_model.set, observed: &self.observed, forward: &self.forward };
         let as_it_is = self.diagnosis.baseline.as_ref();
         let located = as_it_is
-            .and_then(|fitted| Located::of(&bench, &self.forward, fitted).ok().flatten())
+            .and_then(|fitted| Located::of(&problem, &self.forward, fitted).ok().flatten())
             .map(|located| located.to_json(&of_the_model));
         let mut object = located.unwrap_or_else(|| json!({}));
         object["of_the_model"] = Value::Object(of_the_model);
         object
     }
 
-    fn seeds(&self, stand: &Stand<'_>) -> Value {
-        let draws = self.plan.draws(stand);
+    fn seeds(&self, bed_model: &BedModel<'_>) -> Value {
+        let draws = self.plan.draws(bed_model);
         let of = |draws: &[Vec<Draw>]| {
             let mut seeds: Vec<u64> = draws.iter().flatten().map(|draw| draw.seed).collect();
             seeds.sort_unstable();

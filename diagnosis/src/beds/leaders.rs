@@ -11,7 +11,7 @@ pub(super) fn is_settled(diagnosis: &Diagnosis) -> bool {
     diagnosis.verdict.names_effects() && diagnosis.leaders.len() == 1
 }
 
-/// The switches to search next, each with its guess: those of the first few effects of the ranking, apparatus
+/// The candidates to search next, each with its guess: those of the first few effects of the ranking, apparatus
 /// counted among the few, and those of every leader. A screening varies all effects at once, so an effect may rank low only
 /// because it was not searched. None where nothing is named.
 pub(super) fn leaders(
@@ -23,11 +23,11 @@ pub(super) fn leaders(
         return Vec::new();
     }
     let candidates = Forward::candidates(forward);
-    let switches = diagnosis.ranking.iter().filter_map(|effect| {
+    let bed_candidates = diagnosis.ranking.iter().filter_map(|effect| {
         let index = candidates.iter().position(|one| one.id == effect.id)?;
-        Some((forward.switch(index)?, effect.q?, diagnosis.leaders.contains(&effect.id)))
+        Some((forward.bed_candidate(index)?, effect.q?, diagnosis.leaders.contains(&effect.id)))
     });
-    switches
+    bed_candidates
         .enumerate()
         .filter(|(rank, (at, _, leads))| {
             (*rank < SEARCHES * LEADERS || *leads) && !searched.contains(at)

@@ -1,14 +1,14 @@
-//! A leading switch alone, at several amplitudes, from the model as it stands.
+//! A leading candidate alone, at several amplitudes, from the model as it stands.
 
 use measurements::Condition;
 use nalgebra::{DMatrix, DVector};
 use runner::beds::Job;
 use runner::beds::Record;
 
+use super::bed_candidate::BedCandidate;
+use super::bed_model::{BedModel, BedModelError, Draw};
 use super::observables::observables;
 use super::response::{BetweenDraws, Line, Response, deviations};
-use super::stand::{Draw, Stand, StandError};
-use super::switch::Switch;
 use crate::observable::Layout;
 
 /// Amplitudes in that of the guess.
@@ -22,7 +22,7 @@ pub(super) const AMPLITUDES: usize = SHARES.len();
 
 /// One search.
 pub(super) struct LineSearch<'a> {
-    pub(super) switch: &'static Switch,
+    pub(super) bed_candidate: &'static BedCandidate,
     pub(super) amplitudes: Vec<f64>,
     pub(super) conditions: &'a [usize],
     /// One list per condition.
@@ -45,27 +45,27 @@ pub(super) struct Against<'a> {
 impl<'a> LineSearch<'a> {
     /// Around the amplitude `guess`.
     pub(super) fn around(
-        switch: &'static Switch,
+        bed_candidate: &'static BedCandidate,
         guess: f64,
         conditions: &'a [usize],
         draws: &'a [Vec<Draw>],
     ) -> Self {
-        let size = guess.abs().max(LEAST * switch.screen);
+        let size = guess.abs().max(LEAST * bed_candidate.screen);
         let guess = if guess < 0.0 { -size } else { size };
-        let (min, max) = switch.range;
+        let (min, max) = bed_candidate.range;
         let mut amplitudes: Vec<f64> =
             SHARES.iter().map(|share| (share * guess).clamp(min, max)).collect();
         amplitudes.dedup();
-        Self { switch, amplitudes, conditions, draws }
+        Self { bed_candidate, amplitudes, conditions, draws }
     }
 
     /// At the amplitude that is screened, alone.
     pub(super) fn once(
-        switch: &'static Switch,
+        bed_candidate: &'static BedCandidate,
         conditions: &'a [usize],
         draws: &'a [Vec<Draw>],
     ) -> Self {
-        Self { switch, amplitudes: vec![switch.screen], conditions, draws }
+        Self { bed_candidate, amplitudes: vec![bed_candidate.screen], conditions, draws }
     }
 
     /// Largest amplitude of either sign, or zero.
@@ -76,13 +76,13 @@ impl<'a> LineSearch<'a> {
     }
 
     /// The impacts: condition after condition, draw after draw, amplitude after amplitude.
-    pub(super) fn jobs(&self, stand: &Stand<'_>) -> Result<Vec<Job>, StandError> {
+    pub(super) fn jobs(&self, bed_model: &BedModel<'_>) -> Result<Vec<Job>, BedModelError> {
         let mut jobs = Vec::new();
         for (&condition, draws) in self.conditions.iter().zip(self.draws) {
             for &draw in draws {
                 for &q in &self.amplitudes {
-                    let variation = self.switch.change(stand.grains(), q);
-                    jobs.push(stand.job(condition, draw, &variation)?);
+                    let variation = self.bed_candidate.change(bed_model.grains(), q);
+                    jobs.push(bed_model.job(condition, draw, &variation)?);
                 }
             }
         }
@@ -94,19 +94,19 @@ impl<'a> LineSearch<'a> {
     /// it is; another preparation makes another one of the same seed.
     pub(super) fn responses(
         &self,
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         records: &[Option<Record>],
         against: &Against<'_>,
     ) -> Vec<Option<Response>> {
         let [on_draws, on_means] =
-            [true, false].map(|paired| self.held_against(stand, records, (against, paired)));
+            [true, false].map(|paired| self.held_against(bed_model, records, (against, paired)));
         if on_draws.1 < on_means.1 { on_draws.0 } else { on_means.0 }
     }
 
     /// The response of every condition, and how much the largest amplitude scatters, in the variance of a run.
     fn held_against(
         &self,
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         records: &[Option<Record>],
         (against, paired): (&Against<'_>, bool),
     ) -> (Vec<Option<Response>>, f64) {
@@ -116,7 +116,7 @@ impl<'a> LineSearch<'a> {
         let mut scatter = BetweenDraws::default();
         for (at, &condition) in self.conditions.iter().enumerate() {
             let records = &records[at * per_condition..(at + 1) * per_condition];
-            let of_set = (&stand.set.conditions[condition], stand);
+            let of_set = (&bed_model.set.conditions[condition], bed_model);
             let by_draw = self.differences((at, condition), of_set, records, (against, paired));
             let whole = by_draw.iter().filter(|found| found.len() == self.amplitudes.len());
             let each: Vec<Line> = whole.filter_map(|found| Line::through(found)).collect();
@@ -145,12 +145,13 @@ impl<'a> LineSearch<'a> {
     fn differences(
         &self,
         (at, condition): (usize, usize),
-        (of_set, stand): (&Condition, &Stand<'_>),
+        (of_set, bed_model): (&Condition, &BedModel<'_>),
         records: &[Option<Record>],
         (against, paired): (&Against<'_>, bool),
     ) -> Vec<Vec<(f64, DVector<f64>)>> {
-        let numbers =
-            |record: &Record| observables(record, &against.layouts[condition], of_set, stand.set);
+        let numbers = |record: &Record| {
+            observables(record, &against.layouts[condition], of_set, bed_model.set)
+        };
         let of_draw = |(draw, records): (usize, &[Option<Record>])| {
             let own = against.baseline[at].get(draw).copied().flatten().filter(|_| paired);
             let base = own.map_or_else(|| against.means[condition].clone(), numbers);
@@ -173,7 +174,7 @@ impl Against<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::beds::SWITCHES;
+    use crate::beds::BED_CANDIDATES;
     use crate::test_sets;
     use configs::{LoadOptions, Model, ModelSource, find_shipped};
     use measurements::{FinalDefinition, Geometry, Kind};
@@ -203,7 +204,7 @@ mod tests {
         }
     }
 
-    /// The response at the amplitude that is screened (mm), and its variance in that of a run, where the switch
+    /// The response at the amplitude that is screened (mm), and its variance in that of a run, where the candidate
     /// makes depths `with` (mm) of [`BEDS`].
     fn found(with: [f64; 4]) -> (f64, f64) {
         let shipped = ModelSource::Shipped(find_shipped("vertical-2d").unwrap());
@@ -212,11 +213,11 @@ mod tests {
         let mut set = test_sets::set(Kind::Scalar, vec![one], Vec::new());
         set.bed.geometry = Geometry::Planar;
         set.last = FinalDefinition::Deepest;
-        let stand = Stand::new(&model, &set).unwrap();
+        let bed_model = BedModel::new(&model, &set).unwrap();
         let layouts =
-            vec![Layout { final_z: true, ..Layout::default() }; stand.set.conditions.len()];
-        let (conditions, draws) = ([0], stand.draws(0, BEDS.len(), 1));
-        let search = LineSearch::once(&SWITCHES[0], &conditions, &draws);
+            vec![Layout { final_z: true, ..Layout::default() }; bed_model.set.conditions.len()];
+        let (conditions, draws) = ([0], bed_model.draws(0, BEDS.len(), 1));
+        let search = LineSearch::once(&BED_CANDIDATES[0], &conditions, &draws);
         let (baseline, mean) = (BEDS.map(record), DVector::from_element(1, 0.030));
         let against = Against {
             layouts: &layouts,
@@ -225,9 +226,10 @@ mod tests {
             spread: &vec![DMatrix::from_element(1, 1, 1e-6); layouts.len()],
             correlation: 0.8,
         };
-        let responses = search.responses(&stand, &with.map(|depth| Some(record(depth))), &against);
+        let responses =
+            search.responses(&bed_model, &with.map(|depth| Some(record(depth))), &against);
         let response = responses[0].as_ref().unwrap();
-        let q = SWITCHES[0].screen;
+        let q = BED_CANDIDATES[0].screen;
         (1e3 * response.at(q)[0], response.variance_at(q))
     }
 

@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use serde_json::{Map, Value, json};
 
 use super::emulator::BedForward;
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::forward::Prior;
 use crate::marginal::between;
 use crate::noise::Noise;
@@ -26,16 +26,16 @@ pub(super) struct Located {
 }
 
 impl Located {
-    /// By `forward` on `bench`, where `fitted` is the model as it is; `None` where the measurements do not tell.
+    /// By `forward` on `problem`, where `fitted` is the model as it is; `None` where the measurements do not tell.
     pub(super) fn of(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         forward: &BedForward,
         fitted: &Fitted,
-    ) -> Result<Option<Self>, BenchError> {
-        let noise = Noise { between: between(bench, fitted)?, ..fitted.noise };
+    ) -> Result<Option<Self>, FitError> {
+        let noise = Noise { between: between(problem, fitted)?, ..fitted.noise };
         let point = Point::start(forward);
-        let fit = &bench.observed.fit;
-        let weights = bench.weights(&point, &noise, fit)?;
+        let fit = &problem.observed.fit;
+        let weights = problem.weights(&point, &noise, fit)?;
         let keys = forward.baseline().stand_in.scattering().to_vec();
         let priors: Vec<Option<Prior>> =
             forward.shared().parameters().iter().map(|one| one.prior).collect();
@@ -52,7 +52,7 @@ impl Located {
                 .columns_mut(keys.len(), priors.len())
                 .copy_from(forward.shared().columns(condition));
             let white = weight.whiten_columns(&columns);
-            let mean = &bench.observed.conditions[condition].mean;
+            let mean = &problem.observed.conditions[condition].mean;
             let off = weight.whiten(&(mean - weight.predict(&point, forward, condition)?));
             inner += white.tr_mul(&white);
             onto += white.tr_mul(&off);

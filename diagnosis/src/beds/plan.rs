@@ -4,13 +4,13 @@ use runner::beds::Job;
 use runner::beds::{Impacts, Outstanding, SETTLING};
 use serde_json::{Value, json};
 
+use super::bed_candidate::BedCandidate;
+use super::bed_candidates::{BED_CANDIDATES, OF_THE_APPARATUS};
+use super::bed_model::{BedModel, Draw};
 use super::error::BedError;
 use super::line_search;
 use super::preparation::at_level;
 use super::screening::Screening;
-use super::stand::{Draw, Stand};
-use super::switch::Switch;
-use super::switches::{OF_THE_APPARATUS, SWITCHES};
 use super::variation::Variation;
 use crate::observed::Observed;
 use crate::series::evenly;
@@ -101,10 +101,10 @@ const SUPPORTS: usize = 1;
 pub struct Wish {
     /// Time that may be spent (s); the standard plan without.
     pub budget: Option<f64>,
-    /// Switches that are parameters of the model: they compensate what they can before any effect is
+    /// Candidates that are parameters of the model: they compensate what they can before any effect is
     /// ranked.
     pub free: Vec<String>,
-    /// Candidates, the free ones aside: switches, and what the apparatus may do; if there are none, all that
+    /// Candidates, the free ones aside: candidates, and what the apparatus may do; if there are none, all that
     /// measurements may have.
     pub candidates: Vec<String>,
 }
@@ -118,10 +118,10 @@ impl Wish {
         }
     }
 
-    /// Whether `switch` is wanted, as a parameter or as a candidate.
-    fn takes(&self, switch: &Switch) -> bool {
-        self.considers(switch.id, switch.of_measurements)
-            || self.free.iter().any(|id| id == switch.id)
+    /// Whether `bed_candidate` is wanted, as a parameter or as a candidate.
+    fn takes(&self, bed_candidate: &BedCandidate) -> bool {
+        self.considers(bed_candidate.id, bed_candidate.of_measurements)
+            || self.free.iter().any(|id| id == bed_candidate.id)
     }
 
     /// What the apparatus may do that is a candidate.
@@ -178,26 +178,26 @@ pub(super) struct Draws {
 }
 
 impl Plan {
-    /// The largest plan for `stand` that is done in the budget of `wish`, or the standard one; the smallest, if
+    /// The largest plan for `bed_model` that is done in the budget of `wish`, or the standard one; the smallest, if
     /// none is, which [`Plan::fits`] then denies.
     ///
     /// # Errors
     /// If a condition is no model, or a name no candidate.
     pub fn new(
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         observed: &Observed,
         place: &dyn Impacts,
         wish: &Wish,
     ) -> Result<Self, BedError> {
-        let switches: Vec<&str> = switches(stand).map(|one| one.id).collect();
-        let candidates = [&switches[..], &OF_THE_APPARATUS].concat();
-        for (ids, known) in [(&wish.free, &switches), (&wish.candidates, &candidates)] {
+        let bed_candidates: Vec<&str> = bed_candidates(bed_model).map(|one| one.id).collect();
+        let candidates = [&bed_candidates[..], &OF_THE_APPARATUS].concat();
+        for (ids, known) in [(&wish.free, &bed_candidates), (&wish.candidates, &candidates)] {
             if let Some(id) = ids.iter().find(|id| !known.contains(&id.as_str())) {
                 return Err(BedError::UnknownCandidate { id: id.clone(), known: known.clone() });
             }
         }
-        let rate = place.rate(stand.grains())?;
-        let sized = |at| Self::sized(stand, observed, place, (at, rate, wish));
+        let rate = place.rate(bed_model.grains())?;
+        let sized = |at| Self::sized(bed_model, observed, place, (at, rate, wish));
         let Some(budget) = wish.budget else { return sized(STANDARD) };
         let mut chosen = sized(0)?;
         for at in 1..SIZES.len() {
@@ -211,7 +211,7 @@ impl Plan {
     }
 
     fn sized(
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         observed: &Observed,
         place: &dyn Impacts,
         (at, rate, wish): (usize, f64, &Wish),
@@ -234,20 +234,20 @@ impl Plan {
             workers: place.n_workers(),
             wish: wish.clone(),
         };
-        plan.stages = plan.stages_of(stand, place)?;
+        plan.stages = plan.stages_of(bed_model, place)?;
         Ok(plan)
     }
 
     fn stages_of(
         &self,
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         place: &dyn Impacts,
     ) -> Result<Vec<PlannedStage>, BedError> {
-        let draws = self.draws(stand);
-        let baseline = self.baseline_jobs(stand, &draws.fit)?;
-        let again = self.rerun_jobs(stand, &draws.fit)?;
-        let screening = self.screening(stand);
-        let screened = screening.jobs(stand)?;
+        let draws = self.draws(bed_model);
+        let baseline = self.baseline_jobs(bed_model, &draws.fit)?;
+        let again = self.rerun_jobs(bed_model, &draws.fit)?;
+        let screening = self.screening(bed_model);
+        let screened = screening.jobs(bed_model)?;
         let pace = self.rate * self.workers as f64;
         let stage = |name, jobs: &[Job]| -> Result<PlannedStage, BedError> {
             let Outstanding { impacts, beds, work } = place.outstanding(jobs)?;
@@ -263,10 +263,10 @@ impl Plan {
         let Size { line_draws, confirm_draws, .. } = self.size;
         let beds_of = |draws: usize, conditions: usize| match conditions {
             0 => 0,
-            _ => stand.n_beds(draws, conditions),
+            _ => bed_model.n_beds(draws, conditions),
         };
         let (fitted, confirming) = (self.fit.len(), self.confirm.len());
-        let sides = match at_level(stand.grains(), 1.0) {
+        let sides = match at_level(bed_model.grains(), 1.0) {
             Some(_) => 2,
             None => 0,
         };
@@ -308,8 +308,8 @@ impl Plan {
 
     /// As JSON; times are estimates of this machine.
     #[must_use]
-    pub fn to_json(&self, stand: &Stand<'_>) -> Value {
-        let id = |at: &usize| stand.set.conditions[*at].id.clone();
+    pub fn to_json(&self, bed_model: &BedModel<'_>) -> Value {
+        let id = |at: &usize| bed_model.set.conditions[*at].id.clone();
         let stages = self.stages.iter().map(|stage| {
             json!({
                 "stage": stage.name,
@@ -331,22 +331,22 @@ impl Plan {
         })
     }
 
-    pub(super) fn draws(&self, stand: &Stand<'_>) -> Draws {
+    pub(super) fn draws(&self, bed_model: &BedModel<'_>) -> Draws {
         let Size { draws, confirm_draws, .. } = self.size;
-        let behind = stand.n_beds(draws, self.fit.len());
+        let behind = bed_model.n_beds(draws, self.fit.len());
         Draws {
-            fit: stand.draws(0, draws, self.fit.len()),
-            confirm: stand.draws(behind, confirm_draws, self.confirm.len()),
+            fit: bed_model.draws(0, draws, self.fit.len()),
+            confirm: bed_model.draws(behind, confirm_draws, self.confirm.len()),
         }
     }
 
     /// The model as it stands: condition after condition, draw after draw.
     pub(super) fn baseline_jobs(
         &self,
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         draws: &[Vec<Draw>],
     ) -> Result<Vec<Job>, BedError> {
-        Ok(stand.jobs(&self.fit, draws, &Variation::default())?)
+        Ok(bed_model.jobs(&self.fit, draws, &Variation::default())?)
     }
 
     /// The middle one of the conditions that are fitted to, as a place in [`Plan::fit`].
@@ -358,43 +358,45 @@ impl Plan {
     /// draw have in common. None where the model has no number that does.
     pub(super) fn rerun_jobs(
         &self,
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         draws: &[Vec<Draw>],
     ) -> Result<Vec<Job>, BedError> {
         const LITTLE: f64 = 0.02;
         let known = ["restitution", "grain-friction"];
-        let switch = SWITCHES
+        let bed_candidate = BED_CANDIDATES
             .iter()
-            .find(|one| known.contains(&one.id) && one.lacks(stand.grains()).is_none());
+            .find(|one| known.contains(&one.id) && one.lacks(bed_model.grains()).is_none());
         let middle = self.middle()..(self.middle() + 1).min(self.fit.len());
-        let Some(switch) = switch else { return Ok(Vec::new()) };
-        let change = switch.change(stand.grains(), LITTLE);
+        let Some(bed_candidate) = bed_candidate else { return Ok(Vec::new()) };
+        let change = bed_candidate.change(bed_model.grains(), LITTLE);
         let few: Vec<Vec<Draw>> = draws[middle.clone()]
             .iter()
             .map(|draws| draws[..PAIRS.min(draws.len())].to_vec())
             .collect();
-        Ok(stand.jobs(&self.fit[middle], &few, &change)?)
+        Ok(bed_model.jobs(&self.fit[middle], &few, &change)?)
     }
 
-    pub(super) fn screening(&self, stand: &Stand<'_>) -> Screening {
-        let switches = switches(stand).filter(|one| self.wish.takes(one)).collect();
-        let draws = self.draws(stand).fit;
-        Screening::new(switches, self.fit.clone(), self.size.repeats, draws)
+    pub(super) fn screening(&self, bed_model: &BedModel<'_>) -> Screening {
+        let bed_candidates = bed_candidates(bed_model).filter(|one| self.wish.takes(one)).collect();
+        let draws = self.draws(bed_model).fit;
+        Screening::new(bed_candidates, self.fit.clone(), self.size.repeats, draws)
     }
 }
 
-/// The switches of the model of `stand`. One with which the step of the model would be too long is none.
-fn switches<'a>(stand: &'a Stand<'_>) -> impl Iterator<Item = &'static Switch> + use<'a> {
-    let first = stand.draws(0, 1, 1).concat();
-    let is_sound = move |one: &&Switch| {
-        let change = one.change(stand.grains(), one.screen);
-        first.iter().all(|&draw| stand.job(0, draw, &change).is_ok())
+/// The candidates of `bed_model`. One with which the step of the model would be too long is none.
+fn bed_candidates<'a>(
+    bed_model: &'a BedModel<'_>,
+) -> impl Iterator<Item = &'static BedCandidate> + use<'a> {
+    let first = bed_model.draws(0, 1, 1).concat();
+    let is_sound = move |one: &&BedCandidate| {
+        let change = one.change(bed_model.grains(), one.screen);
+        first.iter().all(|&draw| bed_model.job(0, draw, &change).is_ok())
     };
-    let is_open = |one: &&Switch| {
-        one.lacks(stand.grains()).is_none()
-            && !one.stated_by.is_some_and(|says| says(&stand.set.bed))
+    let is_open = |one: &&BedCandidate| {
+        one.lacks(bed_model.grains()).is_none()
+            && !one.stated_by.is_some_and(|says| says(&bed_model.set.bed))
     };
-    SWITCHES.iter().filter(is_open).filter(is_sound)
+    BED_CANDIDATES.iter().filter(is_open).filter(is_sound)
 }
 
 /// `count` of `conditions`, evenly spaced, first and last among them.

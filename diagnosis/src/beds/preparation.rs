@@ -9,8 +9,8 @@ use measurements::{Geometry, MeasurementSet};
 use runner::CampaignError;
 use runner::beds::{Impacts, Lie};
 
+use super::bed_model::BedModel;
 use super::error::BedError;
-use super::stand::Stand;
 use super::variation::Variation;
 use crate::forward::Prior;
 use crate::verdict::ApparatusError;
@@ -117,13 +117,13 @@ impl Known {
 }
 
 impl Preparation {
-    /// Of the model of `stand` to its set; beds are prepared where the set says how its bed lies.
-    pub(super) fn of(stand: &Stand<'_>, place: &dyn Impacts) -> Result<Self, BedError> {
+    /// Of `bed_model` to its set; beds are prepared where the set says how its bed lies.
+    pub(super) fn of(bed_model: &BedModel<'_>, place: &dyn Impacts) -> Result<Self, BedError> {
         let mut all = Self::default();
-        let plain = lies(stand, place, &Variation::default())?;
+        let plain = lies(bed_model, place, &Variation::default())?;
         let Some(plain) = plain.filter(|beds| !beds.is_empty()) else { return Ok(all) };
-        let packing = all.compare(stand, &plain)?;
-        let is_given = matches!(stand.grains().medium.bed.source, BedSource::Csv(_));
+        let packing = all.compare(bed_model, &plain)?;
+        let is_given = matches!(bed_model.grains().medium.bed.source, BedSource::Csv(_));
         let Some(stated) = packing else {
             if is_given {
                 all.sentences.push(
@@ -147,7 +147,7 @@ impl Preparation {
         }
         let mut prepared = own;
         if stated.less(own).is_beyond(WORTH_IT) {
-            let found = prepared_to(stand, place, (own, stated), &all.changes)?;
+            let found = prepared_to(bed_model, place, (own, stated), &all.changes)?;
             if let Some((changes, lie)) = found {
                 all.sentences.push(format!(
                     "the model is prepared to a packing fraction of {:.4} instead of {:.4}: {}",
@@ -167,8 +167,12 @@ impl Preparation {
 
     /// Holds what the set states against the beds of the model, and makes grains as heavy as they are; the packing
     /// fraction of the measured bed, if it follows from what is stated.
-    fn compare(&mut self, stand: &Stand<'_>, beds: &[Lie]) -> Result<Option<Known>, BedError> {
-        let set = stand.set;
+    fn compare(
+        &mut self,
+        bed_model: &BedModel<'_>,
+        beds: &[Lie],
+    ) -> Result<Option<Known>, BedError> {
+        let set = bed_model.set;
         let stated = &set.bed.stated;
         let own = Known::of(beds, |one| one.packing_fraction);
         let height = Known::of(beds, |one| one.height);
@@ -219,18 +223,18 @@ impl Preparation {
                 format!("of grains of another mean diameter than those of the model: {by:+.3} ± {se:.3} mm")
             });
         }
-        self.weigh(stand, (packing, own), Known::of(beds, |one| one.bulk_density))?;
+        self.weigh(bed_model, (packing, own), Known::of(beds, |one| one.bulk_density))?;
         Ok(packing)
     }
 
     /// Holds the bulk density of the set against that of the model, `own`.
     fn weigh(
         &mut self,
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
         (packing, lie): (Option<Known>, Known),
         own: Known,
     ) -> Result<(), BedError> {
-        let set = stand.set;
+        let set = bed_model.set;
         let Some(value) = set.bed.bulk_density else {
             let assumed = "the bulk density of the bed is not stated: its grains are taken to be as heavy as those of the model";
             self.sentences.push(assumed.to_owned());
@@ -255,7 +259,7 @@ impl Preparation {
         if (Known { value: ratio - 1.0, se: error }).is_beyond(NAMED) {
             self.sentences
                 .push(format!("the grains of the model are made {ratio:.3} times as heavy"));
-            if let BedSource::Settle(_) = &stand.grains().medium.bed.source {
+            if let BedSource::Settle(_) = &bed_model.grains().medium.bed.source {
                 self.changes.push(Change::GrainMass(ratio));
             }
         }
@@ -306,12 +310,13 @@ fn packing_of(set: &MeasurementSet) -> Option<Known> {
 
 /// How a few beds of the model with `variation` lie; `None` where that is no model.
 fn lies(
-    stand: &Stand<'_>,
+    bed_model: &BedModel<'_>,
     place: &dyn Impacts,
     variation: &Variation,
 ) -> Result<Option<Vec<Lie>>, BedError> {
-    let draws = stand.draws(0, BEDS, 1).concat();
-    let jobs: Result<Vec<_>, _> = draws.iter().map(|&draw| stand.job(0, draw, variation)).collect();
+    let draws = bed_model.draws(0, BEDS, 1).concat();
+    let jobs: Result<Vec<_>, _> =
+        draws.iter().map(|&draw| bed_model.job(0, draw, variation)).collect();
     match jobs {
         Ok(jobs) => match place.lies(&jobs) {
             Ok(found) => Ok(Some(found)),
@@ -353,7 +358,7 @@ pub(super) fn at_level(model: GrainModel<'_>, level: f64) -> Option<Vec<Change>>
 /// The preparation with which the beds of the model come nearest to the packing fraction `stated`, and their packing
 /// fraction, where that is nearer than `own`; `others` change too.
 fn prepared_to(
-    stand: &Stand<'_>,
+    bed_model: &BedModel<'_>,
     place: &dyn Impacts,
     (own, stated): (Known, Known),
     others: &[Change],
@@ -362,7 +367,7 @@ fn prepared_to(
     let mut look = |changes: Vec<Change>| -> Result<Option<Known>, BedError> {
         let before = [others, &changes[..]].concat();
         let variation = Variation { before, during: Vec::new() };
-        let Some(beds) = lies(stand, place, &variation)? else { return Ok(None) };
+        let Some(beds) = lies(bed_model, place, &variation)? else { return Ok(None) };
         let lie = Known::of(&beds, |one| one.packing_fraction);
         let off = |lie: Known| (lie.value - stated.value).abs();
         if best.as_ref().map_or(off(own), |(_, best)| off(*best)) > off(lie) {
@@ -370,7 +375,7 @@ fn prepared_to(
         }
         Ok(Some(lie))
     };
-    let model = stand.grains();
+    let model = bed_model.grains();
     let is_looser = stated.value < own.value;
     let ends: &[f64] = if is_looser { &[1.0, 2.0] } else { dense(model.medium.space) };
     let (mut near, mut far) = ((0.0, own.value), None);

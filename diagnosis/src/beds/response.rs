@@ -1,8 +1,8 @@
-//! How the observables answer to the amplitude of a switch, and how well a few draws of a bed tell.
+//! How the observables answer to the amplitude of a candidate, and how well a few draws of a bed tell.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-/// How the observables of one condition answer to the amplitude q of a switch: slope q + curvature q².
+/// How the observables of one condition answer to the amplitude q of a candidate: slope q + curvature q².
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Response {
     pub(super) slope: DVector<f64>,

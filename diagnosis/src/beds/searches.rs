@@ -1,6 +1,8 @@
-//! Impacts of switches alone: of those that lead, and of those that screening loses in the scatter and that would lead.
+//! Impacts of candidates alone: of those that lead, and of those that screening loses in the scatter and that would lead.
 
 use super::baseline::Baseline;
+use super::bed_candidate::BedCandidate;
+use super::bed_model::Draw;
 use super::emulator::{BedForward, Screened};
 use super::error::BedError;
 use super::leaders::{is_settled, leaders};
@@ -8,13 +10,11 @@ use super::line_search::{Against, LineSearch};
 use super::plan::SEARCHES;
 use super::response::Response;
 use super::screening::screened;
-use super::stand::Draw;
-use super::switch::Switch;
 use super::work::{Standing, Work};
 use crate::verdict::Diagnosis;
 
 impl Work<'_> {
-    /// Searches the leading switches, except those `searched` before, until one is ahead of the others.
+    /// Searches the leading candidates, except those `searched` before, until one is ahead of the others.
     pub(super) fn settle(
         &mut self,
         forward: &mut BedForward,
@@ -41,7 +41,7 @@ impl Work<'_> {
         Ok(diagnosis)
     }
 
-    /// Searches the switches that screening loses in the scatter and that would lead with what it found of them. At their
+    /// Searches the candidates that screening loses in the scatter and that would lead with what it found of them. At their
     /// best-fitting amplitudes they may be clear. Says whether there are any.
     pub(super) fn search_lost(
         &mut self,
@@ -60,7 +60,7 @@ impl Work<'_> {
         forward.give_up(lost);
         for &(at, guess) in &promising {
             // Screening does not show it at its amplitude, so a smaller one would not show it either.
-            let least = forward.screened()[at].switch.screen;
+            let least = forward.screened()[at].bed_candidate.screen;
             let guess = guess.abs().max(least).copysign(guess);
             searched.push(at);
             self.refine(forward, (at, guess), standing)?;
@@ -68,7 +68,7 @@ impl Work<'_> {
         Ok(!promising.is_empty())
     }
 
-    /// Puts what a search around the amplitude `guess` finds of the switch `at` in place of what is known of it.
+    /// Puts what a search around the amplitude `guess` finds of the candidate `at` in place of what is known of it.
     fn refine(
         &mut self,
         forward: &mut BedForward,
@@ -76,7 +76,7 @@ impl Work<'_> {
         standing: Standing<'_>,
     ) -> Result<(), BedError> {
         let (draws, fit) = (self.searched(standing.draws), self.plan.fit.clone());
-        let search = LineSearch::around(forward.screened()[at].switch, guess, &fit, &draws);
+        let search = LineSearch::around(forward.screened()[at].bed_candidate, guess, &fit, &draws);
         let Some(responses) = self.search(&search, forward.baseline(), standing)? else {
             return Ok(());
         };
@@ -85,27 +85,27 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Those of `draws` that a switch alone is tried on.
+    /// Those of `draws` that a candidate alone is tried on.
     fn searched(&self, draws: &[Vec<Draw>]) -> Vec<Vec<Draw>> {
         let most = self.plan.size.line_draws;
         draws.iter().map(|draws| draws[..most.min(draws.len())].to_vec()).collect()
     }
 
-    /// What every switch does alone, at the amplitude that is screened.
+    /// What every candidate does alone, at the amplitude that is screened.
     pub(super) fn one_at_a_time(
         &mut self,
-        switches: &[&'static Switch],
+        bed_candidates: &[&'static BedCandidate],
         baseline: &Baseline,
         standing: Standing<'_>,
     ) -> Result<Vec<Screened>, BedError> {
         let (draws, fit) = (self.searched(standing.draws), self.plan.fit.clone());
-        let mut all = Vec::with_capacity(switches.len());
-        let runs_of_all = switches.len() * draws.iter().map(Vec::len).sum::<usize>();
-        for &switch in switches {
-            let search = LineSearch::once(switch, &fit, &draws);
+        let mut all = Vec::with_capacity(bed_candidates.len());
+        let runs_of_all = bed_candidates.len() * draws.iter().map(Vec::len).sum::<usize>();
+        for &bed_candidate in bed_candidates {
+            let search = LineSearch::once(bed_candidate, &fit, &draws);
             let found = self.search(&search, baseline, standing)?;
             let responses = found.unwrap_or_else(|| vec![None; self.layouts.len()]);
-            all.push(screened(switch, responses, (baseline, runs_of_all)));
+            all.push(screened(bed_candidate, responses, (baseline, runs_of_all)));
         }
         Ok(all)
     }
@@ -118,7 +118,7 @@ impl Work<'_> {
         baseline: &Baseline,
         Standing { runs, correlation, .. }: Standing<'_>,
     ) -> Result<Option<Vec<Option<Response>>>, BedError> {
-        let Ok(jobs) = search.jobs(self.stand) else { return Ok(None) };
+        let Ok(jobs) = search.jobs(self.bed_model) else { return Ok(None) };
         let records = self.run(&jobs)?;
         let n = search.draws.first().map_or(0, Vec::len);
         let against = Against {
@@ -131,6 +131,6 @@ impl Work<'_> {
             spread: &baseline.spread,
             correlation,
         };
-        Ok(Some(search.responses(self.stand, &records, &against)))
+        Ok(Some(search.responses(self.bed_model, &records, &against)))
     }
 }

@@ -4,13 +4,13 @@ use runner::beds::Impacts;
 use runner::beds::Job;
 use runner::beds::Record;
 
+use super::bed_model::{BedModel, Draw};
 use super::emulator::BedForward;
 use super::error::BedError;
 use super::plan::Plan;
 use super::preparation::Preparation;
-use super::stand::{Draw, Stand};
-use crate::bench::Bench;
 use crate::diagnose::diagnose;
+use crate::fit_problem::FitProblem;
 use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::verdict::Diagnosis;
@@ -28,7 +28,7 @@ pub(super) struct Standing<'a> {
 
 /// A diagnosis under way.
 pub(super) struct Work<'a> {
-    pub(super) stand: &'a Stand<'a>,
+    pub(super) bed_model: &'a BedModel<'a>,
     pub(super) place: &'a dyn Impacts,
     pub(super) plan: Plan,
     pub(super) layouts: Vec<Layout>,
@@ -46,8 +46,11 @@ impl Work<'_> {
         Ok(self.place.run(jobs)?)
     }
 
-    /// What the statistics say of the model and of what is known of its switches.
+    /// What the statistics say of the model and of what is known of its candidates.
     pub(super) fn judge(&self, forward: &BedForward) -> Result<Diagnosis, BedError> {
-        Ok(diagnose(&Bench { set: self.stand.set, observed: &self.observed, forward }, self.seed)?)
+        Ok(diagnose(
+            &FitProblem { set: self.bed_model.set, observed: &self.observed, forward },
+            self.seed,
+        )?)
     }
 }

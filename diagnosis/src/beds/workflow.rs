@@ -6,6 +6,7 @@ use runner::beds::Job;
 use runner::beds::Record;
 
 use super::baseline::Baseline;
+use super::bed_model::{BedModel, Draw};
 use super::confirmation::Confirmation;
 use super::emulator::BedForward;
 use super::error::BedError;
@@ -16,13 +17,12 @@ use super::plan::{Plan, RIVALS, SIDE_DRAWS};
 use super::preparation::{Known, Preparation, UNTOLD, at_level, dense, listed};
 use super::response::correlation_of_pairs;
 use super::shared::{Column, Shared};
-use super::stand::{Draw, Stand};
 use super::variation::Variation;
 use super::work::{Standing, Work};
 use crate::apparatus::is_looked_for;
-use crate::bench::{Bench, BenchError};
 use crate::diagnose::{ALPHA, as_it_is, withdraw};
 use crate::fit::Fit;
+use crate::fit_problem::{FitError, FitProblem};
 use crate::forward::{Parameter, ParameterKind};
 use crate::frequency::of_bed_benchmark;
 use crate::held_out::HeldOut;
@@ -46,47 +46,47 @@ const MOST_PACKING: f64 = 0.2;
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;
 
-/// The model of `stand` as it is, under all conditions of the set that have something to compare.
+/// `bed_model` as it is, under all conditions of the set that have something to compare.
 ///
 /// # Errors
 /// If the impacts cannot be run, or say nothing.
 pub fn bed_forward(
-    stand: &Stand<'_>,
+    bed_model: &BedModel<'_>,
     observed: &Observed,
     place: &dyn Impacts,
 ) -> Result<BedForward, BedError> {
-    let records = place.run(&compare_jobs(stand, observed)?)?;
+    let records = place.run(&compare_jobs(bed_model, observed)?)?;
     let mut by_condition = vec![Vec::new(); observed.conditions.len()];
     let conditions = observed.fit.iter().chain(&observed.holdout);
     for (&condition, runs) in conditions.zip(records.chunks(COMPARED)) {
         by_condition[condition] = runs.iter().flatten().cloned().collect();
     }
-    let baseline = Baseline::of(stand, &observed.layouts(), &by_condition)?;
-    let shared = Shared::of_apparatus(stand.set, &observed.layouts(), &baseline.stand_in);
-    Ok(BedForward::new(baseline, shared.map_err(BenchError::from)?))
+    let baseline = Baseline::of(bed_model, &observed.layouts(), &by_condition)?;
+    let shared = Shared::of_apparatus(bed_model.set, &observed.layouts(), &baseline.stand_in);
+    Ok(BedForward::new(baseline, shared.map_err(FitError::from)?))
 }
 
 /// What [`bed_forward`] would run.
 ///
 /// # Errors
 /// If a condition is no model.
-pub fn compare_jobs(stand: &Stand<'_>, observed: &Observed) -> Result<Vec<Job>, BedError> {
+pub fn compare_jobs(bed_model: &BedModel<'_>, observed: &Observed) -> Result<Vec<Job>, BedError> {
     let conditions = [&observed.fit[..], &observed.holdout].concat();
-    let draws = stand.draws(0, COMPARED, conditions.len());
-    Ok(stand.jobs(&conditions, &draws, &Variation::default())?)
+    let draws = bed_model.draws(0, COMPARED, conditions.len());
+    Ok(bed_model.jobs(&conditions, &draws, &Variation::default())?)
 }
 
 /// Draws of beds that nothing was fitted to, one list per condition that confirms, and the impacts of the unchanged model on
 /// them.
 type Fresh<'a> = (&'a [Vec<Draw>], &'a [Option<Record>]);
 
-/// Diagnoses the model of `stand` by the runs of `plan`; of a plan that does not fit its budget
+/// Diagnoses `bed_model` by the runs of `plan`; of a plan that does not fit its budget
 /// [`unaffordable`](super::unaffordable) says what there is to say. First the model is prepared to what the set states of its bed.
 ///
 /// # Errors
 /// If the impacts cannot be run, or say nothing.
 pub fn diagnose_bed(
-    stand: &Stand<'_>,
+    bed_model: &BedModel<'_>,
     measured: &Observed,
     place: &dyn Impacts,
     plan: Plan,
@@ -98,18 +98,26 @@ pub fn diagnose_bed(
     // What is held out is judged by impacts, and not by what is made of others.
     observed.holdout = Vec::new();
     let layouts = measured.layouts();
-    let preparation = Preparation::of(stand, place)?;
-    let prepared = stand.prepared(&preparation.changes)?;
-    let stand = Stand::new(&prepared, stand.set)?;
-    let work =
-        Work { stand: &stand, place, plan, layouts, observed, seed, impacts: 0, preparation };
+    let preparation = Preparation::of(bed_model, place)?;
+    let prepared = bed_model.prepared(&preparation.changes)?;
+    let bed_model = BedModel::new(&prepared, bed_model.set)?;
+    let work = Work {
+        bed_model: &bed_model,
+        place,
+        plan,
+        layouts,
+        observed,
+        seed,
+        impacts: 0,
+        preparation,
+    };
     work.diagnose(&measured)
 }
 
 impl Work<'_> {
     fn diagnose(mut self, measured: &Observed) -> Result<BedDiagnosis, BedError> {
-        let draws = self.plan.draws(self.stand);
-        let jobs = self.plan.baseline_jobs(self.stand, &draws.fit)?;
+        let draws = self.plan.draws(self.bed_model);
+        let jobs = self.plan.baseline_jobs(self.bed_model, &draws.fit)?;
         let records = self.run(&jobs)?;
         let runs: Vec<Vec<Option<Record>>> =
             records.chunks(self.plan.size.draws).map(<[_]>::to_vec).collect();
@@ -118,31 +126,31 @@ impl Work<'_> {
         for (&condition, runs) in self.plan.fit.iter().zip(&runs) {
             by_condition[condition] = runs.iter().flatten().cloned().collect();
         }
-        let baseline = Baseline::of(self.stand, &self.layouts, &by_condition)?;
-        let shared = Shared::of_apparatus(self.stand.set, &self.layouts, &baseline.stand_in);
-        let mut shared = shared.map_err(BenchError::from)?;
+        let baseline = Baseline::of(self.bed_model, &self.layouts, &by_condition)?;
+        let shared = Shared::of_apparatus(self.bed_model.set, &self.layouts, &baseline.stand_in);
+        let mut shared = shared.map_err(FitError::from)?;
         self.add_packing(&mut shared, &baseline, (&draws.fit, &draws.confirm))?;
         let forward = BedForward::new(baseline, shared);
 
         let confirm = self.plan.confirm.clone();
-        let jobs = self.stand.jobs(&confirm, &draws.confirm, &Variation::default())?;
+        let jobs = self.bed_model.jobs(&confirm, &draws.confirm, &Variation::default())?;
         let plain = self.run(&jobs)?;
         if let Some(diagnosis) = self.at_once(&forward, measured, &plain)? {
             return self.done(diagnosis, forward, None, correlation);
         }
 
-        let screening = self.plan.screening(self.stand);
+        let screening = self.plan.screening(self.bed_model);
         let paired = correlation.unwrap_or(0.0).clamp(0.0, 0.9);
         let standing = Standing { draws: &draws.fit, runs: &runs, correlation: paired };
         let baseline = forward.baseline();
         let screened = if paired > ALONE {
-            self.one_at_a_time(&screening.switches, baseline, standing)?
+            self.one_at_a_time(&screening.bed_candidates, baseline, standing)?
         } else {
-            let records = self.run(&screening.jobs(self.stand)?)?;
-            screening.signatures(self.stand, &self.layouts, &records, (paired, baseline))
+            let records = self.run(&screening.jobs(self.bed_model)?)?;
+            screening.signatures(self.bed_model, &self.layouts, &records, (paired, baseline))
         };
         let wish = &self.plan.wish;
-        let set = self.stand.set;
+        let set = self.bed_model.set;
         let mut of_laws = wish.apparatus();
         of_laws.retain(|id| !is_looked_for(set, id));
         let mut forward = forward.with(screened, &wish.free, &of_laws);
@@ -180,7 +188,7 @@ impl Work<'_> {
         confirmation: Option<Confirmation>,
         correlation: Option<f64>,
     ) -> Result<BedDiagnosis, BedError> {
-        let Self { stand, observed, plan, impacts, preparation, .. } = self;
+        let Self { bed_model, observed, plan, impacts, preparation, .. } = self;
         diagnosis.preparation = listed(&preparation, diagnosis.preparation);
         if diagnosis.verdict.is_explained() && diagnosis.preparation.iter().any(|one| one.named) {
             diagnosis.verdict = Verdict::ExplainedByPreparation;
@@ -206,7 +214,7 @@ impl Work<'_> {
             changes,
         };
         if found.diagnosis.verdict == Verdict::NoneOfTheCandidates {
-            found.seek_missing_force(stand.set)?;
+            found.seek_missing_force(bed_model.set)?;
         }
         Ok(found)
     }
@@ -226,11 +234,11 @@ impl Work<'_> {
         };
         let draws = [few(fit), few(confirm)].concat();
         let mut sides = Vec::new();
-        let dense = dense(self.stand.grains().medium.space).first();
+        let dense = dense(self.bed_model.grains().medium.space).first();
         for &level in [1.0].iter().chain(dense) {
-            let Some(changes) = at_level(self.stand.grains(), level) else { return Ok(()) };
+            let Some(changes) = at_level(self.bed_model.grains(), level) else { return Ok(()) };
             let variation = Variation { before: changes, during: Vec::new() };
-            let Ok(jobs) = self.stand.jobs(&conditions, &draws, &variation) else { continue };
+            let Ok(jobs) = self.bed_model.jobs(&conditions, &draws, &variation) else { continue };
             let lies = self.place.lies(&jobs)?;
             let packing = Known::of(&lies, |one| one.packing_fraction).value;
             sides.push((packing, self.run(&jobs)?));
@@ -248,8 +256,9 @@ impl Work<'_> {
             let seen = |records: &[Option<Record>]| {
                 let runs = records[of_condition.clone()].iter().flatten();
                 let (layout, of_set) =
-                    (&self.layouts[condition], &self.stand.set.conditions[condition]);
-                runs.map(|run| observables(run, layout, of_set, self.stand.set)).collect::<Vec<_>>()
+                    (&self.layouts[condition], &self.bed_model.set.conditions[condition]);
+                runs.map(|run| observables(run, layout, of_set, self.bed_model.set))
+                    .collect::<Vec<_>>()
             };
             let sides = [seen(on_loose), seen(on_dense)];
             columns[condition] = Column::across(&sides, between, &baseline.spread[condition]);
@@ -273,7 +282,7 @@ impl Work<'_> {
         draws: &[Vec<Draw>],
         runs: &[Vec<Option<Record>>],
     ) -> Result<Option<f64>, BedError> {
-        let again = self.plan.rerun_jobs(self.stand, draws)?;
+        let again = self.plan.rerun_jobs(self.bed_model, draws)?;
         let again = self.run(&again)?;
         let Some(first) = runs.get(self.plan.middle()) else { return Ok(None) };
         let pairs: Vec<[f64; 2]> = first
@@ -312,11 +321,11 @@ impl Work<'_> {
         // What no preparation and no apparatus can be expected to do is no explanation of the model as it is.
         let before = if forward.is_strained(baseline) { &alone } else { baseline };
         let conditions = self.plan.confirm.clone();
-        let change = change_at(self.stand, forward, &proposed.point);
-        let Ok(jobs) = self.stand.jobs(&conditions, draws, &change) else { return Ok(None) };
+        let change = change_at(self.bed_model, forward, &proposed.point);
+        let Ok(jobs) = self.bed_model.jobs(&conditions, draws, &change) else { return Ok(None) };
         let with = self.run(&jobs)?;
         let runs = (conditions.as_slice(), [plain, &with[..]]);
-        Ok(Some(Confirmation::of(self.stand, measured, (forward, [before, proposed]), runs)?))
+        Ok(Some(Confirmation::of(self.bed_model, measured, (forward, [before, proposed]), runs)?))
     }
 
     /// Takes out of what `diagnosis` does not tell apart what the fresh beds on which the leader was confirmed tell from it.
@@ -338,8 +347,8 @@ impl Work<'_> {
         for id in rivals.take(RIVALS) {
             let ranked = diagnosis.ranking.iter().find(|effect| effect.id == *id);
             let Some(point) = ranked.and_then(|effect| effect.point.as_ref()) else { continue };
-            let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
-            let Ok(fitted) = bench.fit_once(point, &proposed.noise) else { continue };
+            let problem = FitProblem { set: self.bed_model.set, observed: &self.observed, forward };
+            let Ok(fitted) = problem.fit_once(point, &proposed.noise) else { continue };
             let fits = [&baseline.fit, &fitted.fit];
             let fresh = self.on_fresh_beds(forward, fits, (draws, plain), measured)?;
             if fresh.is_some_and(|fresh| is_beaten(&fresh.held_out, &leader.held_out)) {
@@ -367,8 +376,8 @@ impl Work<'_> {
         measured: &Observed,
         plain: &[Option<Record>],
     ) -> Result<Option<Diagnosis>, BedError> {
-        let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
-        let mut diagnosis = as_it_is(&bench, self.seed)?;
+        let problem = FitProblem { set: self.bed_model.set, observed: &self.observed, forward };
+        let mut diagnosis = as_it_is(&problem, self.seed)?;
         let Some(baseline) = &diagnosis.baseline else { return Ok(Some(diagnosis)) };
         let fit = &baseline.fit;
         let fresh = self.unchanged(forward, fit, measured, plain)?;
@@ -400,7 +409,7 @@ impl Work<'_> {
         plain: &[Option<Record>],
     ) -> Result<HeldOut, BedError> {
         let runs = (self.plan.confirm.as_slice(), [plain; 2]);
-        Ok(Confirmation::of(self.stand, measured, (forward, [fit; 2]), runs)?.held_out)
+        Ok(Confirmation::of(self.bed_model, measured, (forward, [fit; 2]), runs)?.held_out)
     }
 
     /// Has the verdict rest on what was confirmed: a name needs held-out conditions that the model as it is misses by
@@ -415,7 +424,7 @@ impl Work<'_> {
         if !diagnosis.verdict.names_effects() {
             return Ok(diagnosis);
         }
-        let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
+        let problem = FitProblem { set: self.bed_model.set, observed: &self.observed, forward };
         let explains = diagnosis.p_lof_with.is_some_and(|p| p > ALPHA);
         let name = diagnosis.leaders.join(" or ");
         let held_out = confirmation.map(|one| &one.held_out);
@@ -445,7 +454,7 @@ impl Work<'_> {
             held_out.log_density_gain = 0.0;
             held_out.explained = None;
         }
-        Ok(withdraw(&bench, diagnosis, why, self.seed)?)
+        Ok(withdraw(&problem, diagnosis, why, self.seed)?)
     }
 
     /// How much the verdict weighs.

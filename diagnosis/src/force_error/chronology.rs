@@ -9,8 +9,8 @@ use super::groups::GROUPS;
 use super::normal::Normal;
 use super::part::ForceError;
 use super::trend::Trend;
-use crate::bench::{Bench, Fitted};
 use crate::covariate::{Covariate, ORDER, PREVIOUS_RUN};
+use crate::fit_problem::{FitProblem, Fitted};
 use crate::random::{Purpose, stream};
 
 /// Orders of the runs that are drawn.
@@ -33,12 +33,17 @@ pub(super) struct Chronology {
 
 impl Chronology {
     /// Of the runs of those conditions whose order is known; empty if they are too few.
-    pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted, normals: &[Normal], seed: u64) -> Self {
+    pub(super) fn of(
+        problem: &FitProblem<'_>,
+        fitted: &Fitted,
+        normals: &[Normal],
+        seed: u64,
+    ) -> Self {
         let series: Vec<Series> = normals
             .iter()
             .zip(&fitted.weights)
             .filter_map(|(normal, weight)| {
-                let observed = &bench.observed.conditions[normal.condition];
+                let observed = &problem.observed.conditions[normal.condition];
                 let force = |run| {
                     let white = weight.whiten(&observed.deviation(run));
                     normal.whole.dot(&white) / normal.whole.norm_squared()

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::sensitivity::{Direction, force_response};
 
 /// Depths per condition.
@@ -30,15 +30,16 @@ pub(super) struct Normal {
 
 impl Normal {
     /// Of every condition that `fitted` was fitted to.
-    pub(super) fn all(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Self>, BenchError> {
+    pub(super) fn all(problem: &FitProblem<'_>, fitted: &Fitted) -> Result<Vec<Self>, FitError> {
         let mut normals = Vec::with_capacity(fitted.weights.len());
         let mut start = 0;
-        for (&condition, weight) in bench.observed.fit.iter().zip(&fitted.weights) {
-            let observed = &bench.observed.conditions[condition];
+        for (&condition, weight) in problem.observed.fit.iter().zip(&fitted.weights) {
+            let observed = &problem.observed.conditions[condition];
             let rows = observed.mean.len();
             let path = (NODES, observed.reach);
             let point = &fitted.fit.point;
-            let response = force_response(point, bench.forward, condition, Direction::Along, path)?;
+            let response =
+                force_response(point, problem.forward, condition, Direction::Along, path)?;
             let response = weight.whiten_columns(&response);
             let residual = fitted.fit.residual.rows(start, rows);
             start += rows;

@@ -12,9 +12,9 @@ use resistive::{Acts, Direction, Draft, OwnParameter};
 use super::library::library;
 use super::response::Response;
 use super::term::{MILLIMETRE, State, Term, short};
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::field::{Field, Grid};
 use crate::fit::Fit;
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::forward::ByFormulas;
 use crate::held_out::{HeldOut, NEARER};
 use crate::sensitivity::Point;
@@ -74,17 +74,17 @@ impl Formula {
     /// The first of `refitted` (best first) that is worth keeping. As many are looked at as one search refits, and
     /// [`JUDGED`] of those that predict under the noise of the search are judged.
     pub(super) fn kept(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         by: &dyn ByFormulas,
         baseline: &Fitted,
         refitted: Vec<Refitted>,
-    ) -> Result<Option<Self>, BenchError> {
+    ) -> Result<Option<Self>, FitError> {
         let mut judged = 0;
         for one in refitted.into_iter().take(SINGLES + DOUBLES) {
             let own = draft(FOUND, one.force.clone(), by);
             let extended =
-                by.extended(vec![own]).map_err(|why| BenchError::Formula(why.to_string()))?;
-            let with = Bench { forward: &*extended, ..*bench };
+                by.extended(vec![own]).map_err(|why| FitError::Formula(why.to_string()))?;
+            let with = FitProblem { forward: &*extended, ..*problem };
             let holdout = HeldOut::of(&with, baseline, &one.fitted)?;
             if holdout.is_above_noise() != Some(true) {
                 break;
@@ -105,7 +105,11 @@ impl Formula {
     }
 
     /// `refitted`, a part of the model `with`, before conditions that it was not fitted to.
-    fn judged(with: &Bench<'_>, baseline: &Fitted, refitted: Refitted) -> Result<Self, BenchError> {
+    fn judged(
+        with: &FitProblem<'_>,
+        baseline: &Fitted,
+        refitted: Refitted,
+    ) -> Result<Self, FitError> {
         let Refitted { force, terms, amplitudes, fitted } = refitted;
         // The noise of the search differs from the noise beside the formula, which is estimated here.
         let under_its_own = |point: &Point| {
@@ -174,7 +178,7 @@ impl Choice {
 /// Where a formula is looked for.
 #[derive(Clone, Copy)]
 pub(super) struct Search<'a> {
-    pub(super) bench: &'a Bench<'a>,
+    pub(super) problem: &'a FitProblem<'a>,
     pub(super) by: &'a dyn ByFormulas,
     /// The model as it is, fitted.
     pub(super) baseline: &'a Fitted,
@@ -203,7 +207,7 @@ impl Search<'_> {
 
     /// The model with the terms of `choice` as one force; `None` where it cannot be integrated.
     fn refit(&self, choice: &Choice) -> Option<Refitted> {
-        let first = self.bench.forward.candidates().len();
+        let first = self.problem.forward.candidates().len();
         let (amplitudes, parameters) = (choice.amplitudes.clone(), self.near.to_vec());
         let force = force(&choice.terms, &amplitudes, self.states);
         let effects = vec![(first, amplitudes[0])];
@@ -216,7 +220,7 @@ impl Search<'_> {
     fn fit(&self, draft: Draft, start: Point) -> Option<Fit> {
         const HALVINGS: usize = 3;
         let extended = self.by.extended(vec![draft]).ok()?;
-        let with = Bench { forward: &*extended, ..*self.bench };
+        let with = FitProblem { forward: &*extended, ..*self.problem };
         let data = with.data(&self.baseline.weights);
         let mut point = start;
         for _ in 0..HALVINGS {
@@ -240,14 +244,14 @@ pub(super) struct Refitted {
 
 impl Refitted {
     /// Its force on `grid`, under the mean gravity where that counts; `None` where impacts do not share it.
-    pub(super) fn field(&self, bench: &Bench<'_>, grid: &Grid) -> Option<Field> {
+    pub(super) fn field(&self, problem: &FitProblem<'_>, grid: &Grid) -> Option<Field> {
         if self.terms.iter().any(Term::is_of_impact) {
             return None;
         }
-        let fit = &bench.observed.fit;
-        let conditions = || fit.iter().map(|&at| &bench.set.conditions[at]);
+        let fit = &problem.observed.fit;
+        let conditions = || fit.iter().map(|&at| &problem.set.conditions[at]);
         let n = fit.len().max(1) as f64;
-        let gravity = conditions().map(|one| bench.set.bed_of(one).gravity).sum::<f64>() / n;
+        let gravity = conditions().map(|one| problem.set.bed_of(one).gravity).sum::<f64>() / n;
         let states: Vec<State> = (0..grid.against())
             .map(|node| grid.node(node))
             .map(|[depth, speed, angle, diameter]| State {

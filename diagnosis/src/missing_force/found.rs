@@ -9,9 +9,9 @@ use super::apart::Apart;
 use super::process::Process;
 use super::response::Response;
 use super::with_field::WithField;
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::field::Field;
 use crate::fit::{Data, Fit};
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::forward::{Moment, Passages, Request, Scatter};
 
 /// Moments of each condition at which the force is given.
@@ -39,24 +39,24 @@ impl Found {
     /// From `fit`, which is of the model with the force of `field`; `None` where nothing stops the bodies, or nothing can
     /// be told.
     pub(super) fn from(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         by: &dyn Passages,
         (baseline, fit): (&Fitted, Fit),
         field: Field,
-    ) -> Result<Option<Self>, BenchError> {
-        let found = Self::around(bench, by, (baseline, fit), field)?;
-        found.map(|found| found.settled(bench, by, baseline)).transpose()
+    ) -> Result<Option<Self>, FitError> {
+        let found = Self::around(problem, by, (baseline, fit), field)?;
+        found.map(|found| found.settled(problem, by, baseline)).transpose()
     }
 
     /// Repeats the search around the force that it finds until the fit no longer improves.
     pub(super) fn settled(
         mut self,
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         by: &dyn Passages,
         baseline: &Fitted,
-    ) -> Result<Self, BenchError> {
+    ) -> Result<Self, FitError> {
         for _ in 0..ROUNDS {
-            let Some(next) = self.nearer(bench, by, baseline)? else { break };
+            let Some(next) = self.nearer(problem, by, baseline)? else { break };
             let is_settled = self.fit.chi2 - next.fit.chi2 < SETTLED * next.fit.chi2;
             self = next;
             if is_settled {
@@ -70,10 +70,10 @@ impl Found {
     /// does so nowhere.
     fn nearer(
         &self,
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         by: &dyn Passages,
         baseline: &Fitted,
-    ) -> Result<Option<Self>, BenchError> {
+    ) -> Result<Option<Self>, FitError> {
         let whole: DVector<f64> =
             &self.process.mean - DVector::from_column_slice(&self.field.values);
         let mut share = 1.0;
@@ -81,8 +81,8 @@ impl Found {
             let step = &whole * share;
             let values = self.field.values.iter().zip(step.iter()).map(|(at, by)| at + by);
             let field = Field { grid: self.field.grid.clone(), values: values.collect() };
-            let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
-            let data = Data { forward: &with, ..bench.data(&baseline.weights) };
+            let with = WithField { forward: problem.forward, field: Arc::new(field.clone()) };
+            let data = Data { forward: &with, ..problem.data(&baseline.weights) };
             // The parameters that fit best beside this force, to first order.
             let left = &self.fit.residual - self.response.change(&step);
             let Some(point) = self.fit.moved(&left, &data.scales(&self.fit.point)) else {
@@ -95,7 +95,7 @@ impl Found {
                 false => data.fit_as_listed(&self.fit.point).ok(),
             };
             if let Some(fit) = fit.filter(|fit| fit.chi2 < self.fit.chi2) {
-                return Self::around(bench, by, (baseline, fit), field);
+                return Self::around(problem, by, (baseline, fit), field);
             }
             share *= 0.5;
         }
@@ -123,23 +123,23 @@ impl Found {
 
     /// One step of the search, with the answers taken around the force of `field`.
     pub(super) fn around(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         by: &dyn Passages,
         (baseline, fit): (&Fitted, Fit),
         field: Field,
-    ) -> Result<Option<Self>, BenchError> {
+    ) -> Result<Option<Self>, FitError> {
         let scatter = Scatter {
-            coefficients: vec![0.0; bench.forward.n_scattering_coefficients()],
+            coefficients: vec![0.0; problem.forward.n_scattering_coefficients()],
             field: Some(Arc::new(field.clone())),
             ..Scatter::default()
         };
         let at = Request { parameters: &fit.point.parameters, effects: &[], scatter: &scatter };
         let passage = |&condition: &usize| by.passage(condition, &at, &[], MOMENTS);
         let passages: Vec<Vec<Moment>> =
-            bench.observed.fit.iter().map(passage).collect::<Result<_, _>>()?;
+            problem.observed.fit.iter().map(passage).collect::<Result<_, _>>()?;
         let relative = passages.iter().flatten().map(|one| one.force / one.unit);
         let Some(unit) = median(relative.filter(|force| *force > 0.0)) else { return Ok(None) };
-        let response = Response::of(bench, (&fit, &baseline.weights), &field, &passages)?;
+        let response = Response::of(problem, (&fit, &baseline.weights), &field, &passages)?;
         if response.nodes.is_empty() {
             return Ok(None);
         }

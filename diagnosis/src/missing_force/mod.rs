@@ -30,9 +30,9 @@ use self::formula::Search;
 use self::found::Found;
 use self::term::State;
 use self::with_field::WithField;
-use crate::bench::{Bench, BenchError, Fitted};
 use crate::between::Between;
 use crate::field::Field;
+use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::forward::{ByFormulas, Moment, Passages};
 use crate::held_out::HeldOut;
@@ -106,25 +106,25 @@ pub struct MissingForce {
 /// # Errors
 /// If predictions do not have the layout of the measurements.
 pub fn missing_force(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     baseline: &Fitted,
     fall: Option<f64>,
-) -> Result<Option<MissingForce>, BenchError> {
-    if_told(with_band(bench, baseline, fall))
+) -> Result<Option<MissingForce>, FitError> {
+    if_told(with_band(problem, baseline, fall))
 }
 
 fn with_band(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     baseline: &Fitted,
     fall: Option<f64>,
-) -> Result<Option<MissingForce>, BenchError> {
-    let Some(through) = bench.forward.passages() else { return Ok(None) };
-    let Some((under, found)) = most_likely(bench, through, baseline)? else { return Ok(None) };
-    let (found, formula) = match bench.forward.by_formulas() {
-        Some(by) => with_formula(bench, by, baseline, (&under, found))?,
+) -> Result<Option<MissingForce>, FitError> {
+    let Some(through) = problem.forward.passages() else { return Ok(None) };
+    let Some((under, found)) = most_likely(problem, through, baseline)? else { return Ok(None) };
+    let (found, formula) = match problem.forward.by_formulas() {
+        Some(by) => with_formula(problem, by, baseline, (&under, found))?,
         None => (found, None),
     };
-    let readings = table::readings(bench, through, (&found, baseline), under.noise.sessions.sd)?;
+    let readings = table::readings(problem, through, (&found, baseline), under.noise.sessions.sd)?;
     let band = in_words(&readings);
     Ok(Some(MissingForce {
         file: FILE,
@@ -142,8 +142,8 @@ fn with_band(
         log_odds_of_best_effect: fall.map(|fall| 0.5 * fall),
         parameters: formula
             .as_ref()
-            .map_or_else(Map::new, |one| parameters(bench.forward, &one.fitted.fit)),
-        formula_sought: bench.forward.by_formulas().is_some(),
+            .map_or_else(Map::new, |one| parameters(problem.forward, &one.fitted.fit)),
+        formula_sought: problem.forward.by_formulas().is_some(),
         candidate: formula.as_ref().map(Formula::table),
         formula: formula.as_ref().map(|one| one.force.clone()),
         fitted: formula.map(|one| one.fitted),
@@ -156,16 +156,19 @@ fn with_band(
 ///
 /// # Errors
 /// If predictions do not have the layout of the measurements.
-pub(crate) fn log_odds(bench: &Bench<'_>, baseline: &Fitted) -> Result<Option<f64>, BenchError> {
-    let Some(through) = bench.forward.passages() else { return Ok(None) };
-    let found = if_told(most_likely(bench, through, baseline))?;
+pub(crate) fn log_odds(
+    problem: &FitProblem<'_>,
+    baseline: &Fitted,
+) -> Result<Option<f64>, FitError> {
+    let Some(through) = problem.forward.passages() else { return Ok(None) };
+    let found = if_told(most_likely(problem, through, baseline))?;
     Ok(found.map(|(under, found)| odds(&under, &found, baseline)))
 }
 
 /// What is `found`; none if the model fails.
-fn if_told<T>(found: Result<Option<T>, BenchError>) -> Result<Option<T>, BenchError> {
+fn if_told<T>(found: Result<Option<T>, FitError>) -> Result<Option<T>, FitError> {
     match found {
-        Err(BenchError::Predict(_) | BenchError::Singular { .. }) => Ok(None),
+        Err(FitError::Predict(_) | FitError::Singular { .. }) => Ok(None),
         other => other,
     }
 }
@@ -178,16 +181,22 @@ fn odds(under: &Fitted, found: &Found, baseline: &Fitted) -> f64 {
 /// The best formula for the force that was `found` under the noise of `under`, and the force around it, where that is
 /// more likely.
 fn with_formula(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     by: &dyn ByFormulas,
     baseline: &Fitted,
     (under, mut found): (&Fitted, Found),
-) -> Result<(Found, Option<Formula>), BenchError> {
+) -> Result<(Found, Option<Formula>), FitError> {
     let look = |found: &Found| {
-        let states = states(bench, &found.passages);
+        let states = states(problem, &found.passages);
         let near = &found.fit.point.parameters;
-        let search =
-            Search { bench, by, baseline: under, near, response: &found.response, states: &states };
+        let search = Search {
+            problem,
+            by,
+            baseline: under,
+            near,
+            response: &found.response,
+            states: &states,
+        };
         search.refitted()
     };
     let mut refitted = look(&found);
@@ -198,14 +207,14 @@ fn with_formula(
         }
         let grid = &found.field.grid;
         let Some((best, field)) =
-            refitted.iter().find_map(|one| Some((one, one.field(bench, grid)?)))
+            refitted.iter().find_map(|one| Some((one, one.field(problem, grid)?)))
         else {
             break;
         };
-        let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
-        let with = Bench { forward: &with, ..*bench };
+        let with = WithField { forward: problem.forward, field: Arc::new(field.clone()) };
+        let with = FitProblem { forward: &with, ..*problem };
         let Ok(fit) = with.data(&under.weights).fit_as_listed(&best.point()) else { break };
-        let Some(next) = Found::from(bench, by, (under, fit), field)? else { break };
+        let Some(next) = Found::from(problem, by, (under, fit), field)? else { break };
         if next.fit.chi2 >= found.fit.chi2 {
             break;
         }
@@ -213,20 +222,20 @@ fn with_formula(
         refitted.extend(look(&found));
         refitted.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     }
-    Ok((found, Formula::kept(bench, by, baseline, refitted)?))
+    Ok((found, Formula::kept(problem, by, baseline, refitted)?))
 }
 
 /// The most likely force, with the model fitted under its noise. A model that lacks a force takes it for scatter between
 /// conditions, so the noise of `baseline` is tried with less of that scatter too.
 fn most_likely(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     by: &dyn Passages,
     baseline: &Fitted,
-) -> Result<Option<(Fitted, Found)>, BenchError> {
-    let look = |under: Fitted, is_sideways: bool| -> Result<Option<(Fitted, Found)>, BenchError> {
-        let grid = response::grid(bench, is_sideways);
+) -> Result<Option<(Fitted, Found)>, FitError> {
+    let look = |under: Fitted, is_sideways: bool| -> Result<Option<(Fitted, Found)>, FitError> {
+        let grid = response::grid(problem, is_sideways);
         let nothing = Field { values: vec![0.0; grid.len()], grid };
-        let found = Found::around(bench, by, (&under, under.fit.clone()), nothing)?;
+        let found = Found::around(problem, by, (&under, under.fit.clone()), nothing)?;
         Ok(found.map(|found| (under, found)))
     };
     let Some(first) = look(baseline.clone(), false)? else { return Ok(None) };
@@ -236,7 +245,7 @@ fn most_likely(
     let steps = [libm::cbrt(sigma * sd * sd), libm::cbrt(sigma * sigma * sd), sigma, 0.0];
     for less in steps.into_iter().filter(|less| *less < sd) {
         // A noise under which the model cannot be fitted is no candidate.
-        let fitted = bench.with_scatter_between_conditions(less, baseline).ok();
+        let fitted = problem.with_scatter_between_conditions(less, baseline).ok();
         begun.extend(fitted.and_then(|under| look(under, false).ok().flatten()));
     }
     let evidence = |(under, found): &(Fitted, Found)| {
@@ -245,26 +254,26 @@ fn most_likely(
     };
     begun.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
     begun.truncate(SETTLED);
-    let is_oblique = |&condition: &usize| bench.set.conditions[condition].angle_deg < OBLIQUE;
-    if bench.observed.fit.iter().any(is_oblique) {
+    let is_oblique = |&condition: &usize| problem.set.conditions[condition].angle_deg < OBLIQUE;
+    if problem.observed.fit.iter().any(is_oblique) {
         let best = evidence(&begun[0]);
         let both = look(begun[0].0.clone(), true)?;
         begun.extend(both.filter(|both| evidence(both) > best));
     }
     let mut settled = Vec::with_capacity(begun.len());
     for (under, found) in begun {
-        let found = found.settled(bench, by, &under)?;
+        let found = found.settled(problem, by, &under)?;
         settled.push((under, found));
     }
     Ok(settled.into_iter().max_by(|a, b| evidence(a).total_cmp(&evidence(b))))
 }
 
 /// What the bodies go through.
-fn states(bench: &Bench<'_>, passages: &[Vec<Moment>]) -> Vec<State> {
-    let each = bench.observed.fit.iter().zip(passages);
+fn states(problem: &FitProblem<'_>, passages: &[Vec<Moment>]) -> Vec<State> {
+    let each = problem.observed.fit.iter().zip(passages);
     each.flat_map(|(&condition, moments)| {
-        let body = &bench.set.conditions[condition];
-        let gravity = bench.set.bed_of(body).gravity;
+        let body = &problem.set.conditions[condition];
+        let gravity = problem.set.bed_of(body).gravity;
         let (angle, diameter) = (body.angle_deg.to_radians(), body.diameter);
         let impact_speed = body.speed;
         moments.iter().map(move |one| {

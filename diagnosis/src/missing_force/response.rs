@@ -8,9 +8,9 @@ use rayon::prelude::*;
 
 use super::term::State;
 use super::with_field::WithField;
-use crate::bench::Bench;
 use crate::field::{Field, Grid};
 use crate::fit::Fit;
+use crate::fit_problem::FitProblem;
 use crate::forward::{Forward, Moment, PredictError};
 use crate::projection::Basis;
 use crate::sensitivity::Point;
@@ -31,11 +31,11 @@ const NEAR: f64 = 1e-3;
 /// Angles (rad) and diameters (m) that differ by less are one.
 const SAME: f64 = 1e-6;
 
-/// The grid over what the conditions of the bench that are fitted to go through, with a force normal to the motion where
+/// The grid over what the conditions of the problem that are fitted to go through, with a force normal to the motion where
 /// `is_sideways`.
-pub(super) fn grid(bench: &Bench<'_>, is_sideways: bool) -> Grid {
-    let conditions = || bench.observed.fit.iter().map(|&at| &bench.set.conditions[at]);
-    let depth = bench.observed.fit.iter().map(|&at| bench.observed.conditions[at].reach);
+pub(super) fn grid(problem: &FitProblem<'_>, is_sideways: bool) -> Grid {
+    let conditions = || problem.observed.fit.iter().map(|&at| &problem.set.conditions[at]);
+    let depth = problem.observed.fit.iter().map(|&at| problem.observed.conditions[at].reach);
     let depth = depth.fold(f64::MIN_POSITIVE, f64::max);
     let speed = conditions().map(|one| one.speed).fold(f64::MIN_POSITIVE, f64::max);
     let angles = distinct(conditions().map(|one| one.angle_deg.to_radians()), ANGLES);
@@ -101,24 +101,25 @@ impl Block {
 impl Response {
     /// Around `fit`, which is of the model with the force of `field`; `passages` by condition that is fitted to.
     pub(super) fn of(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         (fit, weights): (&Fit, &[Weight]),
         field: &Field,
         passages: &[Vec<Moment>],
     ) -> Result<Self, PredictError> {
-        let blocks: Vec<Block> = bench
+        let blocks: Vec<Block> = problem
             .observed
             .fit
             .par_iter()
             .zip(weights)
             .zip(passages)
             .map(|((&condition, weight), moments)| {
-                let body = &bench.set.conditions[condition];
+                let body = &problem.set.conditions[condition];
                 let [angle, diameter] = [body.angle_deg.to_radians(), body.diameter];
                 let nodes = near(&field.grid, moments, [angle, diameter]);
                 let step = STEP * strength(moments);
-                let columns = columns(bench.forward, &fit.point, condition, (field, &nodes, step))?;
-                let states = states(bench, &field.grid, (condition, &nodes));
+                let columns =
+                    columns(problem.forward, &fit.point, condition, (field, &nodes, step))?;
+                let states = states(problem, &field.grid, (condition, &nodes));
                 Ok(Block { nodes, answers: weight.whiten_columns(&columns), states })
             })
             .collect::<Result<_, PredictError>>()?;
@@ -272,9 +273,13 @@ fn columns(
     })
 }
 
-fn states(bench: &Bench<'_>, grid: &Grid, (condition, nodes): (usize, &[usize])) -> Vec<State> {
-    let of = &bench.set.conditions[condition];
-    let (gravity, impact_speed) = (bench.set.bed_of(of).gravity, of.speed);
+fn states(
+    problem: &FitProblem<'_>,
+    grid: &Grid,
+    (condition, nodes): (usize, &[usize]),
+) -> Vec<State> {
+    let of = &problem.set.conditions[condition];
+    let (gravity, impact_speed) = (problem.set.bed_of(of).gravity, of.speed);
     let against = nodes.iter().filter(|node| **node < grid.against());
     against
         .map(|&node| grid.node(node))

@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::apart::Apart;
 use super::found::{Found, MOMENTS};
-use crate::bench::{Bench, Fitted};
 use crate::fit::Fit;
+use crate::fit_problem::{FitProblem, Fitted};
 use crate::forward::{Moment, Passages, PredictError, Request, Scatter, sense};
 
 /// Share of a velocity along the surface from which on a force normal to the motion is given: none acts on a vertical fall.
@@ -74,13 +74,13 @@ impl Reading {
 /// parameters included. A force that parameters imitate is no less missing where the fit has put it into them. Coefficients
 /// that differ between conditions by `scatter` (relative) may be a part of it: the band holds that.
 pub(super) fn readings(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     by: &dyn Passages,
     (found, baseline): (&Found, &Fitted),
     scatter: f64,
 ) -> Result<Vec<Reading>, PredictError> {
     let fit = &found.fit;
-    let n_coefficients = bench.forward.n_scattering_coefficients();
+    let n_coefficients = problem.forward.n_scattering_coefficients();
     let still =
         |field| Scatter { coefficients: vec![0.0; n_coefficients], field, ..Scatter::default() };
     let (alone, with) = (still(None), still(Some(Arc::new(found.field.clone()))));
@@ -101,8 +101,8 @@ pub(super) fn readings(
     let posterior = Posterior::of(found, &moved, scatter);
     let grid = &found.field.grid;
     let mut readings = Vec::new();
-    for (fitted, &condition) in bench.observed.fit.iter().enumerate() {
-        let body = &bench.set.conditions[condition];
+    for (fitted, &condition) in problem.observed.fit.iter().enumerate() {
+        let body = &problem.set.conditions[condition];
         let [angle, diameter] = [body.angle_deg.to_radians(), body.diameter];
         let moments = by.passage(condition, &at(&fit.point.parameters, &with), &others, MOMENTS)?;
         for one in moments {

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 
 use super::designs::Designs;
 use super::hypothesis::Hypothesis;
-use crate::bench::Bench;
+use crate::fit_problem::FitProblem;
 use crate::forward::Forward;
 use crate::observable::{Layout, Observable};
 use crate::observed::{BEFORE_STOP, ObservedCondition, PENETRATION_FRAMES};
@@ -21,23 +21,23 @@ impl Foreseen {
     /// `condition` with so many repeats, as `leader` predicts it; frames up to the predicted stop.
     /// `None` if the model cannot say.
     pub(super) fn of(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         designs: &dyn Designs,
         (condition, repeats): (Condition, usize),
         leader: &Hypothesis,
     ) -> Option<Self> {
-        let set = alone(bench.set, condition);
+        let set = alone(problem.set, condition);
         let predict = |layout: &Layout| -> Option<(Box<dyn Forward>, DVector<f64>)> {
             let forward = designs.forward(&set, std::slice::from_ref(layout))?;
             let point = leader.before(forward.as_ref())?.point;
             let mean = point.predict(forward.as_ref(), 0).ok()?;
             (mean.len() == layout.len()).then_some((forward, mean))
         };
-        let layout = match bench.set.kind.curve() {
-            Some(_) => curve_layout(bench)?,
+        let layout = match problem.set.kind.curve() {
+            Some(_) => curve_layout(problem)?,
             None => {
                 let stop = predict(&Layout { stop_time: true, ..Layout::default() })?.1[0];
-                layout(bench, &set.conditions[0], stop)
+                layout(problem, &set.conditions[0], stop)
             }
         };
         let (forward, mean) = predict(&layout)?;
@@ -77,12 +77,12 @@ fn alone(set: &MeasurementSet, condition: Condition) -> MeasurementSet {
 
 /// What would be measured of `condition`, whose intruder stops at `stop` (s): frames as far as the set
 /// has them, and the scalars that it has of any condition.
-fn layout(bench: &Bench<'_>, condition: &Condition, stop: f64) -> Layout {
-    let layouts = || bench.observed.fit.iter().map(|&at| &bench.observed.conditions[at].layout);
+fn layout(problem: &FitProblem<'_>, condition: &Condition, stop: f64) -> Layout {
+    let layouts = || problem.observed.fit.iter().map(|&at| &problem.observed.conditions[at].layout);
     let oblique = condition.angle_deg < 90.0;
     let scalars = |is: fn(&Layout) -> bool| layouts().any(is);
     let (final_z, final_x) = (scalars(|one| one.final_z), scalars(|one| one.final_z) && oblique);
-    if bench.set.kind == Kind::Scalar || layouts().all(|one| one.times.is_empty()) {
+    if problem.set.kind == Kind::Scalar || layouts().all(|one| one.times.is_empty()) {
         let stop_time = scalars(|one| one.stop_time);
         return Layout { final_z, final_x, stop_time, ..Layout::default() };
     }
@@ -97,8 +97,8 @@ fn layout(bench: &Bench<'_>, condition: &Condition, stop: f64) -> Layout {
 }
 
 /// A curve as far as any condition of the set has one.
-fn curve_layout(bench: &Bench<'_>) -> Option<Layout> {
-    let layouts = bench.observed.fit.iter().map(|&at| &bench.observed.conditions[at].layout);
+fn curve_layout(problem: &FitProblem<'_>) -> Option<Layout> {
+    let layouts = problem.observed.fit.iter().map(|&at| &problem.observed.conditions[at].layout);
     let end = |one: &&Layout| one.curve.as_ref().and_then(|curve| curve.at.last().copied());
     layouts.max_by(|a, b| end(a).unwrap_or(0.0).total_cmp(&end(b).unwrap_or(0.0))).cloned()
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector, SymmetricEigen};
 
-use crate::bench::Bench;
 use crate::fit::value_mut;
+use crate::fit_problem::FitProblem;
 use crate::forward::{Form, Forward, PredictError, SEPARATE};
 use crate::sensitivity::Point;
 use crate::weights::Weight;
@@ -51,17 +51,17 @@ pub(super) struct Expectation {
 impl Hypothesis {
     /// The model with at most one effect, refitted from `point` under `weights`; its χ² was `behind` that of the best.
     pub(super) fn fitted(
-        bench: &Bench<'_>,
+        problem: &FitProblem<'_>,
         weights: &[Weight],
         (point, behind): (&Point, f64),
     ) -> Result<Self, PredictError> {
-        let fit = bench.data(weights).fit_as_listed_within_forms(point)?;
+        let fit = problem.data(weights).fit_as_listed_within_forms(point)?;
         let added = fit.point.effects.last();
         let name = |&(index, _): &(usize, f64)| {
-            let candidate = &bench.forward.candidates()[index];
+            let candidate = &problem.forward.candidates()[index];
             (candidate.id.clone(), candidate.form.clone())
         };
-        let names = bench.forward.parameters().iter().map(|parameter| parameter.name.clone());
+        let names = problem.forward.parameters().iter().map(|parameter| parameter.name.clone());
         Ok(Self {
             effect: added.map(name),
             behind,

@@ -6,26 +6,26 @@
 //! before it, so the second tells what the first leaves open.
 
 mod designs;
+mod follow_up;
 mod foreseen;
 mod grid;
 mod hypothesis;
 mod prospect;
-mod sequel;
 
 use measurements::{Condition, MeasurementSet};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::bench::{Bench, DEFAULT_SEED};
+use crate::fit_problem::{DEFAULT_SEED, FitProblem};
 use crate::forward::SEPARATE;
 use crate::rounding::rounded;
 use crate::verdict::{Diagnosis, Verdict};
 pub use designs::Designs;
+pub use follow_up::{FollowUp, NewRuns, Share, follow_up};
 use foreseen::Foreseen;
 use hypothesis::Hypothesis;
 use prospect::{Prospect, entropy, information};
-pub use sequel::{Came, Sequel, Share, sequel};
 
 /// Most conditions that are recommended together.
 const TOGETHER: usize = 3;
@@ -110,7 +110,7 @@ struct Feasible {
 /// What to measure next, which `diagnosis` then carries; `None` unless `diagnosis` names several effects that it does not
 /// tell apart, or would if they were above the noise. Equal input gives equal bytes.
 pub fn recommend(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     designs: &dyn Designs,
     diagnosis: &mut Diagnosis,
 ) -> Option<Next> {
@@ -118,22 +118,22 @@ pub fn recommend(
     if !is_open || diagnosis.leaders.len() < 2 {
         return None;
     }
-    let hypotheses = hypotheses(bench, diagnosis);
+    let hypotheses = hypotheses(problem, diagnosis);
     let leader = hypotheses.first()?;
     let probabilities = probabilities(&hypotheses);
     let noise = &diagnosis.proposed.as_ref()?.noise;
-    let repeats = repeats(bench);
-    let options: Vec<Feasible> = grid::feasible(bench.set)
+    let repeats = repeats(problem);
+    let options: Vec<Feasible> = grid::feasible(problem.set)
         .into_par_iter()
         .filter_map(|condition| {
-            let foreseen = Foreseen::of(bench, designs, (condition, repeats), leader)?;
+            let foreseen = Foreseen::of(problem, designs, (condition, repeats), leader)?;
             let before = (foreseen.forward(), 0);
             let prospect = Prospect::of(before, foreseen.observed(), noise, &hypotheses)?;
             let expected_bits = information(&[&prospect], &probabilities, DEFAULT_SEED)?;
             let (expected_delta, [k, l]) = most_apart(&prospect, &hypotheses)?;
             let separates = [k, l].map(|at| hypotheses[at].name().to_owned());
             let condition = foreseen.condition().clone();
-            let bed = condition.bed.and_then(|at| bench.set.beds.get(at));
+            let bed = condition.bed.and_then(|at| problem.set.beds.get(at));
             let bed = bed.map(|named| named.name.clone());
             let alone = Recommendation {
                 condition,
@@ -144,14 +144,14 @@ pub fn recommend(
                 expected_delta,
                 cost: None,
             };
-            let cost = grid::cost(bench.set, &[], &alone);
+            let cost = grid::cost(problem.set, &[], &alone);
             let alone = Recommendation { cost, ..alone };
             Some(Feasible { alone, prospect })
         })
         .collect();
     let next = Next {
         open_bits: entropy(&probabilities),
-        best: together(bench.set, &options, &probabilities),
+        best: together(problem.set, &options, &probabilities),
         feasible: options.into_iter().map(|one| one.alone).collect(),
     };
     diagnosis.next = next.best.iter().map(|one| one.to_json(next.open_bits)).collect();
@@ -206,7 +206,7 @@ fn most_apart(prospect: &Prospect, hypotheses: &[Hypothesis]) -> Option<(f64, [u
 
 /// The effects that are not told apart, in the order of the ranking, and those that follow; the leader
 /// first. One around whose fit the model cannot be integrated is left out.
-fn hypotheses(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Hypothesis> {
+fn hypotheses(problem: &FitProblem<'_>, diagnosis: &Diagnosis) -> Vec<Hypothesis> {
     let Some(proposed) = &diagnosis.proposed else { return Vec::new() };
     let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
     let is_named = |id: &String| diagnosis.leaders.contains(id);
@@ -217,7 +217,7 @@ fn hypotheses(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Hypothesis> {
         .chain(followers)
         .filter_map(|effect| {
             let which = (effect.point.as_ref()?, best - effect.delta?);
-            Hypothesis::fitted(bench, &proposed.weights, which).ok()
+            Hypothesis::fitted(problem, &proposed.weights, which).ok()
         })
         .collect()
 }
@@ -230,8 +230,8 @@ fn probabilities(hypotheses: &[Hypothesis]) -> Vec<f64> {
 
 /// Runs of each condition of the set, at least [`REPEATS`]: the most common number, of the common ones
 /// the largest.
-fn repeats(bench: &Bench<'_>) -> usize {
-    let runs = || bench.observed.fit.iter().map(|&at| bench.observed.conditions[at].runs.len());
+fn repeats(problem: &FitProblem<'_>) -> usize {
+    let runs = || problem.observed.fit.iter().map(|&at| problem.observed.conditions[at].runs.len());
     let common = runs().max_by_key(|&n| (runs().filter(|&other| other == n).count(), n));
     common.unwrap_or(0).max(REPEATS)
 }

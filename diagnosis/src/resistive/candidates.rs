@@ -1,7 +1,7 @@
 //! What a diagnosis is told of the effects that could be added.
 
 use measurements::MeasurementSet;
-use resistive::{Effect, Twin, twins};
+use resistive::{Confounder, Effect, confounders};
 
 use super::needs::{contains, missing};
 use crate::forward::Candidate;
@@ -19,10 +19,10 @@ pub(super) fn of(effects: &[Effect], set: &MeasurementSet) -> Vec<Candidate> {
         .map(|candidate| candidate.id.clone())
         .collect();
     for candidate in candidates.iter_mut().filter(|one| one.not_testable.is_none()) {
-        candidate.unresolved = twins(&candidate.id)
-            .filter(|twin| !twin.any_of.iter().any(|need| contains(set, *need)))
-            .map(|twin| twin.effect.to_owned())
-            .filter(|twin| testable.contains(twin))
+        candidate.unresolved = confounders(&candidate.id)
+            .filter(|confounder| !confounder.any_of.iter().any(|need| contains(set, *need)))
+            .map(|confounder| confounder.effect.to_owned())
+            .filter(|confounder| testable.contains(confounder))
             .collect();
     }
     candidates
@@ -32,7 +32,7 @@ fn candidate(effect: &Effect, set: &MeasurementSet) -> Candidate {
     let spec = effect.amplitude();
     let lacks: Vec<&str> =
         missing(&effect.visible(), set).into_iter().map(|need| need.describe()).collect();
-    let from = |twin: Twin| format!("from {}", twin.describe());
+    let from = |confounder: Confounder| format!("from {}", confounder.describe());
     Candidate {
         id: effect.name().to_owned(),
         form: effect.form(),
@@ -42,7 +42,7 @@ fn candidate(effect: &Effect, set: &MeasurementSet) -> Candidate {
         usual: Some([spec.plausible.min, spec.plausible.max]),
         step: STEP * spec.plausible.max,
         not_testable: (!lacks.is_empty()).then(|| format!("needs {}", lacks.join(" and "))),
-        separable_from: twins(effect.name()).map(from).collect::<Vec<_>>().join(", "),
+        separable_from: confounders(effect.name()).map(from).collect::<Vec<_>>().join(", "),
         unresolved: Vec::new(),
     }
 }

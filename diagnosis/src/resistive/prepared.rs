@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use configs::{FreeParameter, ResistiveMedium};
 use engine::math::Vec3;
 use engine::params::ParamTable;
-use intruders::{Casting, ShapeEntry};
+use intruders::{AssemblyRequest, ShapeEntry};
 use measurements::{
     Condition, FinalDefinition, Geometry, Kind, MeasurementSet, Role, SizeError, StopDefinition,
 };
@@ -463,7 +463,7 @@ impl Prepared {
             true => (1.0, 0.0),
             false => (libm::sin(angle), libm::cos(angle)),
         };
-        let made = (self.shape.assembly)(&Casting {
+        let made = (self.shape.assembly)(&AssemblyRequest {
             params: &self.sizes,
             space: self.space,
             mass: self.mass * (1.0 + scatter.mass),

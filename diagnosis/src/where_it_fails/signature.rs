@@ -1,6 +1,6 @@
 //! What the best candidates would do to the predictions.
 
-use crate::bench::{Bench, Fitted};
+use crate::fit_problem::{FitProblem, Fitted};
 use crate::residual::{Residual, residuals};
 use crate::verdict::Diagnosis;
 
@@ -20,7 +20,7 @@ pub struct Signature {
 /// model as it is, which has left `found`. Effects around which the model cannot be integrated are passed
 /// over.
 pub(super) fn best_two(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     baseline: &Fitted,
     (found, holdout): (&[Residual], &[usize]),
     diagnosis: &Diagnosis,
@@ -29,7 +29,7 @@ pub(super) fn best_two(
         diagnosis.ranking.iter().filter_map(|effect| Some((effect, effect.point.as_ref()?)));
     ranked
         .filter_map(|(effect, point)| {
-            let with = residuals(bench, point, &baseline.noise, holdout).ok()?;
+            let with = residuals(problem, point, &baseline.noise, holdout).ok()?;
             let pairs = with.iter().zip(found);
             let change = pairs.map(|(with, without)| with.predicted - without.predicted).collect();
             Some(Signature { effect: effect.id.clone(), change })

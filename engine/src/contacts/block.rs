@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use arrayvec::ArrayVec;
 
-use super::bench::Bench;
+use super::buffers::ThreadBuffers;
 use super::pairs::{Pairs, Side};
 use super::tally::Tally;
 use crate::body::Part;
@@ -166,12 +166,12 @@ impl Block {
         stages: &[Box<dyn ContactStage>],
         (gone, close): (impl Fn(usize) -> f64, Option<f64>),
         dt: f64,
-        bench: &mut Bench,
+        buffers: &mut ThreadBuffers,
     ) where
         dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
     {
-        let n_near = self.find_near::<D, N>(grains, gone, close, &mut bench.near);
-        let near = &bench.near[..n_near];
+        let n_near = self.find_near::<D, N>(grains, gone, close, &mut buffers.near);
+        let near = &buffers.near[..n_near];
         self.pairs.make_room(n_near);
         let mut pairs = Pairs {
             grains,
@@ -282,7 +282,7 @@ impl Block {
         stages: &[Box<dyn ContactStage>],
         part: (usize, &Part),
         dt: f64,
-        bench: &mut Bench,
+        buffers: &mut ThreadBuffers,
     ) where
         dyn ContactStage: Sweep<f64, N>,
     {
@@ -297,30 +297,30 @@ impl Block {
             let position = grains.period.image_near(motion.position, placement.position);
             Motion { position, ..motion }
         };
-        bench.points.clear();
-        bench.points.extend(table.keys().map(|[i, _]| placement.to_body(grain(i).position)));
-        part.surface.closest_many(&bench.points, &mut bench.nearest);
-        bench.near_rows.clear();
-        bench.points_half.clear();
-        for (row, ([i, _], nearest)) in table.keys().zip(&bench.nearest).enumerate() {
+        buffers.points.clear();
+        buffers.points.extend(table.keys().map(|[i, _]| placement.to_body(grain(i).position)));
+        part.surface.closest_many(&buffers.points, &mut buffers.nearest);
+        buffers.near_rows.clear();
+        buffers.points_half.clear();
+        for (row, ([i, _], nearest)) in table.keys().zip(&buffers.nearest).enumerate() {
             let grain = grain(i);
             if nearest.gap < grain.radius || table.is_touching(row) {
-                bench.near_rows.push(row as u32);
+                buffers.near_rows.push(row as u32);
                 let half = grain.position - grain.velocity * (0.5 * dt);
-                bench.points_half.push(placement.to_body_half(half));
+                buffers.points_half.push(placement.to_body_half(half));
             }
         }
-        part.surface.closest_many(&bench.points_half, &mut bench.nearest_half);
-        table.make_room(bench.near_rows.len());
+        part.surface.closest_many(&buffers.points_half, &mut buffers.nearest_half);
+        table.make_room(buffers.near_rows.len());
 
         let is_wall = part.partner == Partner::Wall;
-        let halves = bench.nearest_half.chunks(GROUPS);
-        for (rows, halves) in bench.near_rows.chunks(GROUPS).zip(halves) {
+        let halves = buffers.nearest_half.chunks(GROUPS);
+        for (rows, halves) in buffers.near_rows.chunks(GROUPS).zip(halves) {
             let mut evaluation = Evaluation::<f64, N>::new();
             let mut contacts = ArrayVec::<(Contact, Motion), GROUPS>::new();
             for (&row, half) in rows.iter().zip(halves) {
                 let grain = grain(table.candidates()[row as usize].key[0]);
-                let now = &bench.nearest[row as usize];
+                let now = &buffers.nearest[row as usize];
                 let record = table.record(row as usize);
                 let last = table.last_of_record(record);
                 let before = (*last > 0.0).then_some(*last);
@@ -343,7 +343,7 @@ impl Block {
                 if !(evaluation.contacts[k].overlaps() | evaluation.responses[k].holds) {
                     table.open(row);
                 } else {
-                    let felt = bench.nearest[row].felt;
+                    let felt = buffers.nearest[row].felt;
                     let wrenches = match felt {
                         true => &mut self.tally.wrenches,
                         false => &mut self.tally.unfelt,

@@ -5,8 +5,8 @@
 //! its own grains and for its halo, grains of other blocks that touch them; those are added up when the
 //! grains are kicked. Nothing is locked, and every sum has one order.
 
-mod bench;
 mod block;
+mod buffers;
 mod pairs;
 pub mod rebound;
 pub mod stage;
@@ -27,16 +27,16 @@ use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
 use crate::space::Space;
 
-use bench::{Bench, Benches};
 pub(crate) use block::Evaluation;
 use block::{Block, Delivery};
+use buffers::{BuffersOfThreads, ThreadBuffers};
 pub(crate) use tally::Tally;
 
 /// The contacts of a bed, by block of grains.
 pub(crate) struct Contacts {
     stages: Vec<Box<dyn ContactStage>>,
     blocks: Vec<Block>,
-    benches: Benches,
+    buffers_of_threads: BuffersOfThreads,
     /// Gap (m) up to which pairs are looked at in every step, if not all are.
     close_margin: Option<f64>,
 }
@@ -56,7 +56,7 @@ impl Contacts {
                 Block::new(block * BLOCK, tables, Tally::new(n_channels, n_parts), n_parts)
             })
             .collect();
-        Self { stages, blocks, benches: Benches::new(), close_margin }
+        Self { stages, blocks, buffers_of_threads: BuffersOfThreads::new(), close_margin }
     }
 
     pub(crate) fn stages(&self) -> &[Box<dyn ContactStage>] {
@@ -85,9 +85,9 @@ impl Contacts {
         margin: f64,
         marks: &[bool],
     ) {
-        let benches = &self.benches;
+        let buffers_of_threads = &self.buffers_of_threads;
         marked(&mut self.blocks, marks).for_each(|block| {
-            let Bench { keys, merger, neighbourhood, .. } = &mut *benches.own();
+            let ThreadBuffers { keys, merger, neighbourhood, .. } = &mut *buffers_of_threads.own();
             keys.clear();
             let own = block.first..(block.first + BLOCK).min(grains.len());
             grid.pairs_of(grains, own, margin, neighbourhood, keys);
@@ -105,36 +105,36 @@ impl Contacts {
         marks: &[bool],
     ) {
         let (index, part) = part;
-        let benches = &self.benches;
+        let buffers_of_threads = &self.buffers_of_threads;
         marked(&mut self.blocks, marks).for_each(|block| {
-            let bench = &mut *benches.own();
+            let buffers = &mut *buffers_of_threads.own();
             let end = (block.first + BLOCK).min(grains.len());
             let here = block.first..end;
             let placement = &part.placement;
             let image = |x: Vec3| grains.period.image_near(x, placement.position);
-            bench.points.clear();
+            buffers.points.clear();
             let positions = here.clone().map(|i| grains.drifted(i));
-            bench.points.extend(positions.map(|x| placement.to_body(image(x))));
-            part.surface.closest_many(&bench.points, &mut bench.nearest);
-            bench.keys.clear();
-            for (i, nearest) in here.zip(&bench.nearest) {
+            buffers.points.extend(positions.map(|x| placement.to_body(image(x))));
+            part.surface.closest_many(&buffers.points, &mut buffers.nearest);
+            buffers.keys.clear();
+            for (i, nearest) in here.zip(&buffers.nearest) {
                 if nearest.gap < grains.radius(i) + margin {
-                    bench.keys.push([i as u32, 0]);
+                    buffers.keys.push([i as u32, 0]);
                 }
             }
-            block.surfaces[index].rekey(&bench.keys, &mut bench.merger);
+            block.surfaces[index].rekey(&buffers.keys, &mut buffers.merger);
         });
     }
 
     /// Says for every pair whose load its second grain has, and for every grain of a halo where the
     /// block that owns it finds its load, after the blocks with a mark have been listed.
     fn address_loads(&mut self, n_grains: usize, marks: &[bool]) {
-        let benches = &self.benches;
+        let buffers_of_threads = &self.buffers_of_threads;
         marked(&mut self.blocks, marks).for_each(|block| {
             block.relisted();
             let own = block.first..(block.first + BLOCK).min(n_grains);
             let is_own = |j: u32| own.contains(&(j as usize));
-            let Bench { halo, .. } = &mut *benches.own();
+            let ThreadBuffers { halo, .. } = &mut *buffers_of_threads.own();
             halo.clear();
             halo.extend(block.pairs.keys().map(|[_, j]| j).filter(|&j| !is_own(j)));
             halo.sort_unstable();
@@ -198,11 +198,11 @@ impl Contacts {
     ) where
         dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
     {
-        let (stages, benches) = (&self.stages[..], &self.benches);
+        let (stages, buffers_of_threads) = (&self.stages[..], &self.buffers_of_threads);
         let close = self.close_margin;
         // Each block by itself: blocks differ, and half of them in one piece keeps a thread waiting.
         self.blocks.par_iter_mut().with_max_len(1).for_each(|block| {
-            let bench = &mut *benches.own();
+            let buffers = &mut *buffers_of_threads.own();
             let own = (block.first + BLOCK).min(grains.len()) - block.first;
             let n_numbers = (own + block.halo.len()) * D::Load::LEN;
             reserve(&mut block.loads, n_numbers);
@@ -210,9 +210,9 @@ impl Contacts {
             block.loads.fill(0.0);
             block.tally.clear();
             let gone = |block: usize| fastest[block] * dt;
-            block.sweep_pairs::<D, N>(grains, stages, (gone, close), dt, bench);
+            block.sweep_pairs::<D, N>(grains, stages, (gone, close), dt, buffers);
             for (index, part) in parts.into_iter().flatten().enumerate() {
-                block.sweep_surface::<D, N>(grains, stages, (index, part), dt, bench);
+                block.sweep_surface::<D, N>(grains, stages, (index, part), dt, buffers);
             }
         });
     }

@@ -178,3 +178,35 @@ fn an_import_is_repeated_to_the_byte() {
     let error = file.refuse_changed().expect_err("a table has changed").to_string();
     assert!(error.contains("h05_r0.csv: it is not what it was"), "{error}");
 }
+
+#[test]
+fn angles_of_oblique_drops_have_the_error_of_one_launch_and_no_common_one() {
+    let here = tempfile::tempdir().expect("a folder");
+    let mut paths = Vec::new();
+    let (height, forward): (f64, f64) = (0.1, 1.0);
+    // The launcher throws 3 % faster or slower: by 0.8 degrees.
+    for (repeat, faster) in [0.97, 1.0, 1.03, 0.97, 1.03].into_iter().enumerate() {
+        let camera = Camera { seed: 40 + repeat as u64, ..Camera::USUAL };
+        let one = drop_into(Meets::Section, height, camera);
+        let mut text = String::from("t (s),z (mm),x (mm)\n");
+        for (t, z) in &one.readings {
+            let flown = (t - camera.hold).clamp(0.0, one.contact - camera.hold);
+            let slid = (t - one.contact).max(0.0);
+            let x = faster * forward * (flown + 0.02 * (1.0 - (-slid / 0.02).exp()));
+            let _ = writeln!(text, "{t:.5},{:.3},{:.3}", 1e3 * z, 1e3 * x);
+        }
+        let path = here.path().join(format!("oblique_{repeat}.csv"));
+        fs::write(&path, text).expect("a table");
+        paths.push(path);
+    }
+    let out = here.path().join("set");
+    imported(&paths, &ball(), &out);
+    let loaded = MeasurementSet::load(&out).unwrap_or_else(|error| panic!("{error}")).set;
+    let true_angle = (2.0 * 9.81 * height).sqrt().atan2(forward).to_degrees();
+    let angle = loaded.conditions[0].angle_deg;
+    assert_eq!(loaded.conditions.len(), 1);
+    assert!((angle - true_angle).abs() < 1.0, "{angle}, {true_angle}");
+    let sigma = loaded.instrument.angle_sigma_deg.expect("it is written");
+    assert!((0.4..1.6).contains(&sigma), "{sigma}");
+    assert_eq!(loaded.instrument.angle_bias_sigma_deg.map(f64::to_bits), Some(0));
+}

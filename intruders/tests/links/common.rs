@@ -3,7 +3,7 @@
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable};
-use intruders::{Casting, Launchable};
+use intruders::{AssemblyRequest, Launchable};
 use resistive::{Coefficients, find_resistance};
 use resistive::{Impact, ResistanceLaw, Surroundings, Tolerance};
 
@@ -38,8 +38,8 @@ fn cast(name: &str, given: &[(&str, f64)], mass: f64, velocity: Vec3, spin: f64)
     let entry = intruders::find(name).expect("the shape is registered");
     let sizes = [("length", LENGTH), ("diameter", DIAMETER)];
     let params = fill(entry.params, &[given, &sizes].concat());
-    let casting = Casting { params: &params, space: Space::Spatial, mass, velocity, spin };
-    (entry.assembly)(&casting)
+    let request = AssemblyRequest { params: &params, space: Space::Spatial, mass, velocity, spin };
+    (entry.assembly)(&request)
 }
 
 /// `launchable` on sand under `laws`.

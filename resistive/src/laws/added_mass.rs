@@ -5,7 +5,7 @@ use engine::fluid::added_mass_of_spheroid;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, Range};
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{OtherForm, ResistanceEntry, Role, amplitude};
 
 /// (m + m_a) a = … − r dm_a/dt v,  m_a = q ρ V(z) (2 k)^s   (kg)
@@ -44,8 +44,8 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         unit: "1",
         visible: &[],
         separable_from: &[
-            Twin { effect: "buoyancy", any_of: &[Needs::Masses] },
-            Twin { effect: "yield-stress", any_of: &[Needs::Masses] },
+            Confounder { effect: "buoyancy", any_of: &[Needs::Masses] },
+            Confounder { effect: "yield-stress", any_of: &[Needs::Masses] },
         ],
     }),
     summary: "Grains that move with the intruder and add to its inertia.",

@@ -3,7 +3,7 @@
 use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F_x → (1 + q) F_x   (N)
@@ -23,7 +23,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Physics,
         unit: "1",
         visible: &[Needs::Oblique],
-        separable_from: &[Twin {
+        separable_from: &[Confounder {
             effect: "buoyancy",
             any_of: &[Needs::ObliqueAngles, Needs::Masses],
         }],

@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ g A D e^(−(H−z)/D) v̂   (N)
@@ -30,7 +30,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Physics,
         unit: "1",
         visible: &[Needs::BedDepth],
-        separable_from: &[Twin { effect: "depth-exponent", any_of: &[Needs::BedDepths] }],
+        separable_from: &[Confounder { effect: "depth-exponent", any_of: &[Needs::BedDepths] }],
     }),
     summary: "A resistance that grows as the intruder nears the bottom of the bed.",
     formula: "F = -q rho g A D exp(-(H-z)/D) v/|v|",

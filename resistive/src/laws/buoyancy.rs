@@ -4,7 +4,7 @@ use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings}
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = q ρ g V(z), upward   (N)
@@ -29,7 +29,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Physics,
         unit: "1",
         visible: &[],
-        separable_from: &[Twin {
+        separable_from: &[Confounder {
             effect: "yield-stress",
             any_of: &[Needs::Oblique, Needs::Masses],
         }],

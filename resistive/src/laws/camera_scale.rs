@@ -3,7 +3,7 @@
 use crate::ResistanceLaw;
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → (1 + q) z, x → (1 + q) x   (m)
@@ -22,7 +22,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Apparatus,
         unit: "1",
         visible: &[],
-        separable_from: &[Twin { effect: "depth-zero", any_of: &[Needs::Conditions] }],
+        separable_from: &[Confounder { effect: "depth-zero", any_of: &[Needs::Conditions] }],
     }),
     summary: "A wrong scale of the camera: changes no run, only its reading.",
     formula: "z -> (1+q) z, x -> (1+q) x, as read",

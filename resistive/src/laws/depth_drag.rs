@@ -3,7 +3,7 @@
 use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F → (1 + q z/D) F   (N)
@@ -23,8 +23,8 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         unit: "1",
         visible: &[],
         separable_from: &[
-            Twin { effect: "rate-friction", any_of: &[Needs::Speeds] },
-            Twin { effect: "immersion", any_of: &[Needs::Shallow] },
+            Confounder { effect: "rate-friction", any_of: &[Needs::Speeds] },
+            Confounder { effect: "immersion", any_of: &[Needs::Shallow] },
         ],
     }),
     summary: "Drag that grows, or falls, with depth.",

@@ -10,7 +10,7 @@ pub struct Facts {
     /// What the data must contain for it to act at all.
     pub visible: &'static [Needs],
     /// The effects that look like it, and what tells them apart; a pair is listed with one of the two.
-    pub separable_from: &'static [Twin],
+    pub separable_from: &'static [Confounder],
 }
 
 /// What an effect is part of.
@@ -38,7 +38,7 @@ impl Kind {
 
 /// An effect that does nearly the same to the observables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Twin {
+pub struct Confounder {
     /// Its name.
     pub effect: &'static str,
     /// Data tell the two apart only if they contain any of these.
@@ -107,7 +107,7 @@ impl Needs {
     }
 }
 
-impl Twin {
+impl Confounder {
     /// "yield-stress by two diameters or frames before impact".
     #[must_use]
     pub fn describe(&self) -> String {
@@ -118,51 +118,54 @@ impl Twin {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{RESISTANCE_LAWS, Role, find_resistance, twins};
+    use super::super::{RESISTANCE_LAWS, Role, confounders, find_resistance};
     use super::*;
 
-    fn declared() -> Vec<(&'static str, Twin)> {
+    fn declared() -> Vec<(&'static str, Confounder)> {
         let of = |role| match role {
             Role::Effect(facts) => facts.separable_from,
             Role::Baseline => &[],
         };
         RESISTANCE_LAWS
             .iter()
-            .flat_map(|entry| of(entry.role).iter().map(|twin| (entry.name, *twin)))
+            .flat_map(|entry| of(entry.role).iter().map(|confounder| (entry.name, *confounder)))
             .collect()
     }
 
     #[test]
     fn every_twin_is_another_effect_and_can_be_told_apart_by_something() {
-        for (name, twin) in declared() {
-            let entry = find_resistance(twin.effect)
-                .unwrap_or_else(|| panic!("{name} has the twin {}, which is none", twin.effect));
-            assert!(matches!(entry.role, Role::Effect(_)), "{name}: {}", twin.effect);
-            assert_ne!(name, twin.effect);
-            assert!(!twin.any_of.is_empty(), "{name}: {}", twin.effect);
+        for (name, confounder) in declared() {
+            let entry = find_resistance(confounder.effect).unwrap_or_else(|| {
+                panic!("{name} has the twin {}, which is none", confounder.effect)
+            });
+            assert!(matches!(entry.role, Role::Effect(_)), "{name}: {}", confounder.effect);
+            assert_ne!(name, confounder.effect);
+            assert!(!confounder.any_of.is_empty(), "{name}: {}", confounder.effect);
         }
     }
 
     #[test]
     fn a_pair_of_twins_is_declared_once_and_known_to_both() {
         let pairs = declared();
-        for (index, (name, twin)) in pairs.iter().enumerate() {
-            let same = |(other, its): &&(&str, Twin)| {
-                (*other, its.effect) == (*name, twin.effect)
-                    || (*other, its.effect) == (twin.effect, *name)
+        for (index, (name, confounder)) in pairs.iter().enumerate() {
+            let same = |(other, its): &&(&str, Confounder)| {
+                (*other, its.effect) == (*name, confounder.effect)
+                    || (*other, its.effect) == (confounder.effect, *name)
             };
             let again = pairs[..index].iter().find(same);
-            assert!(again.is_none(), "{name} and {} are declared twice", twin.effect);
-            let back = twins(twin.effect).find(|back| back.effect == *name);
-            assert_eq!(back.map(|back| back.any_of), Some(twin.any_of));
-            assert!(twins(name).any(|there| there == *twin));
+            assert!(again.is_none(), "{name} and {} are declared twice", confounder.effect);
+            let back = confounders(confounder.effect).find(|back| back.effect == *name);
+            assert_eq!(back.map(|back| back.any_of), Some(confounder.any_of));
+            assert!(confounders(name).any(|there| there == *confounder));
         }
     }
 
     #[test]
     fn what_tells_twins_apart_reads_as_a_sentence() {
-        let twin =
-            Twin { effect: "lift", any_of: &[Needs::ObliqueAngles, Needs::FramesBeforeImpact] };
-        assert_eq!(twin.describe(), "lift by two oblique angles or frames before impact");
+        let confounder = Confounder {
+            effect: "lift",
+            any_of: &[Needs::ObliqueAngles, Needs::FramesBeforeImpact],
+        };
+        assert_eq!(confounder.describe(), "lift by two oblique angles or frames before impact");
     }
 }

@@ -3,7 +3,7 @@
 use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → λ (1 − e^(−z/λ)), q = D/λ   (m)
@@ -23,7 +23,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Physics,
         unit: "1",
         visible: &[],
-        separable_from: &[Twin { effect: "depth-exponent", any_of: &[Needs::Depths] }],
+        separable_from: &[Confounder { effect: "depth-exponent", any_of: &[Needs::Depths] }],
     }),
     summary: "Friction that saturates with depth, as the pressure in a silo does.",
     formula: "z -> lambda (1 - exp(-z/lambda)), q = D/lambda",

@@ -1,6 +1,6 @@
 //! The resistive force on a slender round link that enters at an angle.
 
-use crate::{Account, Flow, Grip, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use crate::{Account, Flow, FrictionLimits, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, Range};
 use engine::units::Dimension;
@@ -160,9 +160,11 @@ impl ResistanceLaw for Link {
             |law: Vertical| law.coefficient * libm::pow(ratio, law.exponent) * weight * at.volume;
         load.gripping = true;
         let [across, along] = &mut load.grip;
-        *across =
-            Grip { positive: across.positive + horizontal, negative: across.negative + horizontal };
-        *along = Grip {
+        *across = FrictionLimits {
+            positive: across.positive + horizontal,
+            negative: across.negative + horizontal,
+        };
+        *along = FrictionLimits {
             positive: along.positive + vertical(self.withdrawing),
             negative: along.negative + vertical(self.plunging),
         };

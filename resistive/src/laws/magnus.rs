@@ -4,7 +4,7 @@ use crate::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = q ρ A R ω × v   (N)
@@ -24,7 +24,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Physics,
         unit: "1",
         visible: &[Needs::Spin],
-        separable_from: &[Twin { effect: "lift", any_of: &[Needs::SpinBothWays] }],
+        separable_from: &[Confounder { effect: "lift", any_of: &[Needs::SpinBothWays] }],
     }),
     summary: "A force across the motion of a spinning intruder.",
     formula: "F = q rho A R omega x v",

@@ -43,7 +43,7 @@ pub use expression::{
     Acts, Direction, Draft, ForceError, OwnEffect, OwnEffectError, OwnParameter, STATE_VARIABLES,
     StateVariable,
 };
-pub use facts::{Facts, Kind, Needs, Twin};
+pub use facts::{Confounder, Facts, Kind, Needs};
 pub use registry::{OtherForm, ResistanceEntry, Role};
 
 /// Every baseline and every effect, in the order of the docs, of the sum and of a diagnosis.
@@ -83,13 +83,13 @@ pub fn find_resistance(name: &str) -> Option<&'static ResistanceEntry> {
 }
 
 /// The effects that look like the effect called `name`, whichever of the two says so.
-pub fn twins(name: &str) -> impl Iterator<Item = Twin> {
+pub fn confounders(name: &str) -> impl Iterator<Item = Confounder> {
     RESISTANCE_LAWS.iter().filter_map(move |entry| {
         let listed = |name: &str, effect: &str| {
             let Role::Effect(facts) = find_resistance(name)?.role else { return None };
-            facts.separable_from.iter().find(|twin| twin.effect == effect)
+            facts.separable_from.iter().find(|confounder| confounder.effect == effect)
         };
-        let twin = listed(name, entry.name).or_else(|| listed(entry.name, name))?;
-        Some(Twin { effect: entry.name, any_of: twin.any_of })
+        let confounder = listed(name, entry.name).or_else(|| listed(entry.name, name))?;
+        Some(Confounder { effect: entry.name, any_of: confounder.any_of })
     })
 }

@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = m g (sin q, 0, 1 − cos q), in the bed and above   (N)
@@ -39,8 +39,8 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         unit: "rad",
         visible: &[],
         separable_from: &[
-            Twin { effect: "lift", any_of: &[Needs::Vertical] },
-            Twin { effect: "anisotropic-drag", any_of: &[Needs::Vertical] },
+            Confounder { effect: "lift", any_of: &[Needs::Vertical] },
+            Confounder { effect: "anisotropic-drag", any_of: &[Needs::Vertical] },
         ],
     }),
     summary: "Gravity leans in the plane of motion: a fault of the apparatus.",

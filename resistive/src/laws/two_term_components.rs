@@ -89,7 +89,7 @@ impl ResistanceLaw for TwoTermComponents {
 mod tests {
     use super::super::testing::{SPHERE, sinking, surroundings};
     use super::*;
-    use crate::Grip;
+    use crate::FrictionLimits;
 
     #[test]
     fn the_vertical_force_is_that_of_the_article() {
@@ -98,6 +98,6 @@ mod tests {
         law.act(&SPHERE.at(0.05), &sinking(2.0), &surroundings(), &mut load);
         assert!((load.dynamic.z - 0.2706 * 4.0).abs() < 1e-14);
         assert!(load.dynamic.x.abs() < 1e-14);
-        assert_eq!(load.grip[1], Grip { positive: 4.506 * 0.05, negative: 4.506 * 0.05 });
+        assert_eq!(load.grip[1], FrictionLimits { positive: 4.506 * 0.05, negative: 4.506 * 0.05 });
     }
 }

@@ -4,7 +4,7 @@ use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings}
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, Range};
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{OtherForm, ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ A √(g D) (D/D₀)^(n − 1/2) (z/D₀)^p v in the bed, D₀ = 25 mm   (N)
@@ -37,7 +37,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Physics,
         unit: "1",
         visible: &[],
-        separable_from: &[Twin { effect: "yield-stress", any_of: &[Needs::Speeds] }],
+        separable_from: &[Confounder { effect: "yield-stress", any_of: &[Needs::Speeds] }],
     }),
     summary: "A drag in proportion to the speed.",
     formula: "F = -q rho A sqrt(g D) (D/25 mm)^(n - 1/2) (z/25 mm)^p v",

@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::{ParamSpec, Range};
 
-use super::facts::{Facts, Kind, Needs, Twin};
+use super::facts::{Confounder, Facts, Kind, Needs};
 use super::registry::{OtherForm, ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ g A D (D/D₀)^(n − 1) v̂ in the bed, D₀ = 25 mm   (N)
@@ -34,7 +34,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         kind: Kind::Physics,
         unit: "1",
         visible: &[],
-        separable_from: &[Twin {
+        separable_from: &[Confounder {
             effect: "rail-friction",
             any_of: &[Needs::FramesBeforeImpact, Needs::Diameters],
         }],

@@ -72,17 +72,21 @@ impl Job {
     pub(super) fn prepare_bed(
         &self,
         cache: &Path,
-        heed: &mut dyn Control,
+        signals: &mut dyn Control,
     ) -> Result<bool, CampaignError> {
         let grains = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;
-        Ok(prepare(grains, cache, heed)?.is_some())
+        Ok(prepare(grains, cache, signals)?.is_some())
     }
 
     /// Runs it, on a bed that is found or made in `cache`. Nothing if it was stopped.
-    fn run(&self, cache: &Path, heed: &mut dyn Control) -> Result<Option<Record>, CampaignError> {
+    fn run(
+        &self,
+        cache: &Path,
+        signals: &mut dyn Control,
+    ) -> Result<Option<Record>, CampaignError> {
         let grains = self.model.grains().ok_or_else(|| CampaignError::no_grains(&self.model))?;
         let of_bed = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;
-        let Some(bed) = prepare(of_bed, cache, heed)? else { return Ok(None) };
+        let Some(bed) = prepare(of_bed, cache, signals)? else { return Ok(None) };
         let start = Instant::now();
         let x = grains.medium.start.x.unwrap_or(0.5 * grains.medium.container.width);
         let configs::Impact { speed, angle_rad, .. } = self.model.impact;
@@ -97,7 +101,7 @@ impl Job {
         while !simulation.is_over() || settles(&simulation) {
             simulation.advance()?;
             recorder.observe(&simulation);
-            if heed.wants_to_stop() {
+            if signals.wants_to_stop() {
                 return Ok(None);
             }
         }
@@ -113,14 +117,14 @@ impl Job {
     pub(super) fn kept_or_run(
         &self,
         (cache, key): (&Path, &[u8; 32]),
-        heed: &mut dyn Control,
+        signals: &mut dyn Control,
     ) -> Result<Option<(Record, bool)>, CampaignError> {
         let lock_path = Self::path(cache, key).with_extension("lock");
-        let Some(lock) = lock(&lock_path, heed)? else { return Ok(None) };
+        let Some(lock) = lock(&lock_path, signals)? else { return Ok(None) };
         let (record, is_new) = match Self::kept(cache, key) {
             Some(record) => (record, false),
             None => {
-                let Some(record) = self.run(cache, heed)? else { return Ok(None) };
+                let Some(record) = self.run(cache, signals)? else { return Ok(None) };
                 Self::keep(cache, key, &record)?;
                 (record, true)
             }
@@ -152,13 +156,13 @@ impl Job {
 }
 
 /// Holds the lock at `path`, once it is free. Nothing if `heed` wants to stop before.
-fn lock(path: &Path, heed: &dyn Control) -> Result<Option<File>, CampaignError> {
+fn lock(path: &Path, signals: &dyn Control) -> Result<Option<File>, CampaignError> {
     let io = |action| move |source| CampaignError::Io { action, path: path.to_owned(), source };
     let file = File::create(path).map_err(io("make"))?;
     loop {
         match file.try_lock() {
             Ok(()) => return Ok(Some(file)),
-            Err(TryLockError::WouldBlock) if heed.wants_to_stop() => return Ok(None),
+            Err(TryLockError::WouldBlock) if signals.wants_to_stop() => return Ok(None),
             Err(TryLockError::WouldBlock) => sleep(WAIT),
             Err(TryLockError::Error(source)) => return Err(io("lock")(source)),
         }

@@ -28,9 +28,9 @@ impl Lie {
     pub(super) fn of(
         model: GrainModel<'_>,
         cache: &Path,
-        heed: &mut dyn Control,
+        signals: &mut dyn Control,
     ) -> Result<Option<Self>, CampaignError> {
-        let Some(prepared) = prepare(model, cache, heed)? else { return Ok(None) };
+        let Some(prepared) = prepare(model, cache, signals)? else { return Ok(None) };
         let bed = model.bed(&prepared.resting);
         let BedReport { packing_fraction, height, mean_diameter, coordination, .. } =
             BedReport::of(&bed);

@@ -96,15 +96,18 @@ impl Impacts for Place<'_> {
         }
         let beds = self.missing_beds(jobs, &missing)?;
         let work = |&at: &usize| rate::SETTLING * jobs[at].work();
-        self.side_by_side(Stage::Beds, &beds, (&work, 0), |at, heed| {
-            jobs[at].prepare_bed(self.cache, heed)?.then_some(()).ok_or(CampaignError::Interrupted)
+        self.side_by_side(Stage::Beds, &beds, (&work, 0), |at, signals| {
+            jobs[at]
+                .prepare_bed(self.cache, signals)?
+                .then_some(())
+                .ok_or(CampaignError::Interrupted)
         })?;
         let done = jobs.len() - missing.len();
         let pace = Mutex::new(Rate::default());
         let work = |&at: &usize| jobs[at].work();
-        let ran = self.side_by_side(Stage::Impacts, &missing, (&work, done), |at, heed| {
+        let ran = self.side_by_side(Stage::Impacts, &missing, (&work, done), |at, signals| {
             let job = &jobs[at];
-            match job.kept_or_run((self.cache, &keys[at]), heed) {
+            match job.kept_or_run((self.cache, &keys[at]), signals) {
                 Ok(Some((record, was_run))) => {
                     if was_run {
                         pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
@@ -138,10 +141,10 @@ impl Impacts for Place<'_> {
         let keys = jobs.iter().map(Job::bed_key).collect::<Result<Vec<_>, _>>()?;
         let firsts = first_of_each(&keys, |_| true);
         let work = |&at: &usize| rate::SETTLING * jobs[at].work();
-        let found = self.side_by_side(Stage::Beds, &firsts, (&work, 0), |at, heed| {
+        let found = self.side_by_side(Stage::Beds, &firsts, (&work, 0), |at, signals| {
             let bed = &jobs[at].bed;
             let grains = bed.grains().ok_or_else(|| CampaignError::no_grains(bed))?;
-            Lie::of(grains, self.cache, heed)?.ok_or(CampaignError::Interrupted)
+            Lie::of(grains, self.cache, signals)?.ok_or(CampaignError::Interrupted)
         })?;
         let of = |key: &[u8; 32]| firsts.iter().position(|&first| keys[first] == *key);
         Ok(keys.iter().filter_map(|key| of(key).map(|place| found[place])).collect())

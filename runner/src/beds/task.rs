@@ -10,7 +10,7 @@ use super::job::Job;
 use crate::elsewhere::{ModelText, Task};
 use crate::error::CampaignError;
 use crate::hexadecimal;
-use crate::workers::Heed;
+use crate::workers::WorkerSignals;
 
 /// One thing to be done, on one thread.
 #[derive(Debug, Serialize, Deserialize)]
@@ -60,7 +60,7 @@ impl Task for BedTask {
             Self::Bed { model } => {
                 let model = model.load()?;
                 let job = Job { bed: Arc::clone(&model), model, expected: 0.0, settles: false };
-                job.prepare_bed(cache, &mut Heed::unattended()).map(drop)
+                job.prepare_bed(cache, &mut WorkerSignals::unattended()).map(drop)
             }
             Self::Impact { key, model, bed, expected, settles } => {
                 let (model, bed) = (model.load()?, bed.load()?);
@@ -78,7 +78,7 @@ fn impact(job: &Job, asked: &str, cache: &Path) -> Result<(), CampaignError> {
         return Err(CampaignError::OtherProgram);
     }
     // Tasks that were handed over twice do it once.
-    match job.kept_or_run((cache, &key), &mut Heed::unattended()) {
+    match job.kept_or_run((cache, &key), &mut WorkerSignals::unattended()) {
         Ok(Some(_)) => Ok(()),
         Ok(None) => Err(CampaignError::Interrupted),
         Err(why) if why.is_of_an_impact() => {

@@ -4,7 +4,7 @@
 use configs::{LoadOptions, Model, ModelSource};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, ParamTable, Range};
-use intruders::Casting;
+use intruders::AssemblyRequest;
 use resistive::{Account, Flow, Immersion, Impact, Load, Motion, ResistanceLaw, Surroundings};
 use resistive::{Approach, Coefficients, Facts, Kind, Needs, ResistanceEntry, Role};
 
@@ -105,7 +105,7 @@ pub(crate) fn impacts() -> [Impact; 2] {
     let numbers = ParamTable::from_iter([("q", 0.2)]);
     laws.push((ENTRY.build)(&Coefficients::new(numbers)));
     let launch = model.launch(condition);
-    let made = (model.intruder.shape.assembly)(&Casting {
+    let made = (model.intruder.shape.assembly)(&AssemblyRequest {
         params: &model.intruder.params,
         space: plain.space,
         mass: model.intruder.mass,

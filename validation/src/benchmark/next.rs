@@ -3,8 +3,8 @@
 //! drawn from the same grid.
 
 use configs::Model;
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::next::{Next, Recommendation, recommend};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
@@ -108,9 +108,9 @@ fn look(set: &MeasurementSet, model: &Model) -> Result<(Diagnosis, Option<Next>)
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(model, set, &observed.layouts())
         .map_err(|error| error.to_string())?;
-    let bench = Bench { set, observed: &observed, forward: &forward };
-    let mut diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
-    let next = recommend(&bench, model, &mut diagnosis);
+    let problem = FitProblem { set, observed: &observed, forward: &forward };
+    let mut diagnosis = diagnose(&problem, DEFAULT_SEED).map_err(|error| error.to_string())?;
+    let next = recommend(&problem, model, &mut diagnosis);
     Ok((diagnosis, next))
 }
 

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
-use diagnosis::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use diagnosis::diagnose::{diagnose, seek_missing_force};
+use diagnosis::fit_problem::{DEFAULT_SEED, FitError, FitProblem, Fitted};
 use diagnosis::held_out::HeldOut;
 use diagnosis::missing_force::MissingForce;
 use diagnosis::observable::Observable;
@@ -176,11 +176,11 @@ fn answer(
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(model, set, &observed.layouts())
         .map_err(|error| error.to_string())?;
-    let bench = Bench { set, observed: &observed, forward: &forward };
-    let mut diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
+    let problem = FitProblem { set, observed: &observed, forward: &forward };
+    let mut diagnosis = diagnose(&problem, DEFAULT_SEED).map_err(|error| error.to_string())?;
     let seconds = clock.elapsed().as_secs_f64();
     let pair = match plan.hidden.len() {
-        2 => pair_found(&bench).map_err(|error| error.to_string())?,
+        2 => pair_found(&problem).map_err(|error| error.to_string())?,
         _ => None,
     };
     let resolved = match plan.row {
@@ -188,11 +188,11 @@ fn answer(
         _ => None,
     };
     let rest = resting_points(&plan.design, nature).map_err(|error| error.to_string())?;
-    let endpoint = endpoints(&bench, &diagnosis, &rest).map_err(|error| error.to_string())?;
+    let endpoint = endpoints(&problem, &diagnosis, &rest).map_err(|error| error.to_string())?;
     let missing = diagnosis.missing_force.as_ref().map(|force| Missing::of(force, plan, nature));
     let asked = match plan.row {
         Row::Beyond if missing.is_none() && is_unlisted(plan) => {
-            seek_missing_force(&bench, &mut diagnosis).map_err(|error| error.to_string())?;
+            seek_missing_force(&problem, &mut diagnosis).map_err(|error| error.to_string())?;
             diagnosis.missing_force.as_ref().map(|force| Missing::of(force, plan, nature))
         }
         _ => None,
@@ -272,33 +272,33 @@ impl Answer {
 }
 
 /// The two effects that a search for pairs ends with.
-fn pair_found(bench: &Bench<'_>) -> Result<Option<Vec<String>>, BenchError> {
-    let baseline = bench.fit(&Point::start(bench.forward))?;
-    let candidates = bench.forward.candidates();
+fn pair_found(problem: &FitProblem<'_>) -> Result<Option<Vec<String>>, FitError> {
+    let baseline = problem.fit(&Point::start(problem.forward))?;
+    let candidates = problem.forward.candidates();
     let testable: Vec<usize> =
         (0..candidates.len()).filter(|&at| candidates[at].not_testable.is_none()).collect();
-    let pair = best_two(bench, &baseline, &testable, DEFAULT_SEED)?;
+    let pair = best_two(problem, &baseline, &testable, DEFAULT_SEED)?;
     Ok(pair.map(|pair| pair.iter().map(|&index| candidates[index].id.to_string()).collect()))
 }
 
 /// Errors of the resting points `rest` (m) of held-out conditions, without and with what is named.
 fn endpoints(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     diagnosis: &Diagnosis,
     rest: &[[f64; 2]],
-) -> Result<Option<[f64; 2]>, BenchError> {
+) -> Result<Option<[f64; 2]>, FitError> {
     let (Some(baseline), Some(proposed)) = (&diagnosis.baseline, &diagnosis.proposed) else {
         return Ok(None);
     };
     if diagnosis.verdict != Verdict::Supported {
         return Ok(None);
     }
-    let error = |fitted: &Fitted| -> Result<f64, BenchError> {
+    let error = |fitted: &Fitted| -> Result<f64, FitError> {
         let (mut square, mut n) = (0.0, 0.0);
-        for &condition in &bench.observed.holdout {
-            let predicted = fitted.fit.point.predict(bench.forward, condition)?;
+        for &condition in &problem.observed.holdout {
+            let predicted = fitted.fit.point.predict(problem.forward, condition)?;
             let [x, z] = rest[condition];
-            square += distance_squared(bench, condition, &predicted, [x, z]);
+            square += distance_squared(problem, condition, &predicted, [x, z]);
             n += 1.0;
         }
         Ok((square / f64::max(n, 1.0)).sqrt())
@@ -307,12 +307,12 @@ fn endpoints(
 }
 
 fn distance_squared(
-    bench: &Bench<'_>,
+    problem: &FitProblem<'_>,
     condition: usize,
     predicted: &DVector<f64>,
     [x, z]: [f64; 2],
 ) -> f64 {
-    let kinds = bench.observed.conditions[condition].layout.kinds();
+    let kinds = problem.observed.conditions[condition].layout.kinds();
     let each = kinds.iter().zip(predicted.iter());
     each.map(|(kind, value)| match kind {
         Observable::FinalDepth => (value - z).powi(2),

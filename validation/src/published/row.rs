@@ -1,8 +1,8 @@
 //! A row: a published result, how it is run again, and what came of it.
 
 use configs::ConfigError;
-use diagnosis::bench::BenchError;
 use diagnosis::compare::CompareError;
+use diagnosis::fit_problem::FitError;
 use engine::error::ThreadsError;
 use plots::PictureError;
 use resistive::ImpactError;
@@ -98,7 +98,7 @@ pub enum PublishedError {
     #[error(transparent)]
     Impact(#[from] ImpactError),
     #[error(transparent)]
-    Bench(#[from] BenchError),
+    FitProblem(#[from] FitError),
     #[error(transparent)]
     Compare(#[from] CompareError),
     #[error(transparent)]

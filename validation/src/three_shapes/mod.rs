@@ -19,7 +19,8 @@ use runner::run::{prepare, result_key};
 use serde::{Deserialize, Serialize};
 
 use runner::{
-    CampaignError, Elsewhere, Heed, ModelText, Stage, Task, Unattended, Watch, Workers, hexadecimal,
+    CampaignError, Elsewhere, ModelText, Stage, Task, Unattended, Watch, WorkerSignals, Workers,
+    hexadecimal,
 };
 
 pub use picture::{depths, frictions};
@@ -330,7 +331,7 @@ impl Case {
 /// Runs the one impact of `model`.
 fn impact(model: &Model, cache: &Path) -> Result<Outcome, CampaignError> {
     let grains = model.grains().expect("the models of the study are beds of grains");
-    let prepared = prepare(grains, cache, &mut Heed { stop: &|| false, warn: &|_| () })?;
+    let prepared = prepare(grains, cache, &mut WorkerSignals { stop: &|| false, warn: &|_| () })?;
     let resting = prepared.expect("nobody stops an unattended preparation").resting;
     let mut simulation = grains.simulation(&resting, &model.conditions()[0])?;
     let every = (SAMPLE / simulation.clock().dt).round().max(1.0) as u64;

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use configs::{Change, Model};
-use diagnosis::beds::{Stand, Variation};
+use diagnosis::beds::{BedModel, Variation};
 use measurements::{Crater, Role, Run};
 use runner::beds::{Impacts, Job, Place, Record};
 use runner::{CampaignError, Progress, Unattended, Watch};
@@ -35,12 +35,12 @@ impl Watch for Patience {
 
 fn jobs() -> Vec<Job> {
     let (model, set) = (model(&[]), empty_set(vec![condition(0.5, Role::Fit)]));
-    let stand = Stand::new(&model, &set).unwrap();
-    let draws = stand.draws(0, 2, 2).concat();
-    let plain = draws.iter().map(|&draw| stand.job(0, draw, &Variation::default()).unwrap());
+    let bed_model = BedModel::new(&model, &set).unwrap();
+    let draws = bed_model.draws(0, 2, 2).concat();
+    let plain = draws.iter().map(|&draw| bed_model.job(0, draw, &Variation::default()).unwrap());
     let rolling = Change::Effect("rolling-resistance", vec![("rolling_friction", 0.1)]);
     let rough = Variation::during(rolling);
-    let rough = stand.job(0, draws[0], &rough).unwrap();
+    let rough = bed_model.job(0, draws[0], &rough).unwrap();
     plain.chain([rough]).collect()
 }
 
@@ -57,9 +57,9 @@ fn an_impact_leaves_a_crater_that_is_measured_when_the_bed_lies_still() {
     };
     let mut measured = |crater: Crater, model: &Model| {
         set.runs = vec![Run { stop_time: Some(0.05), crater, ..Run::new("a".to_owned(), 0) }];
-        let stand = Stand::new(model, &set).unwrap();
-        let draw = stand.draws(0, 1, 1).concat()[0];
-        let job = stand.job(0, draw, &Variation::default()).unwrap();
+        let bed_model = BedModel::new(model, &set).unwrap();
+        let draw = bed_model.draws(0, 1, 1).concat()[0];
+        let job = bed_model.job(0, draw, &Variation::default()).unwrap();
         (job.settles, place.run(&[job]).unwrap()[0].clone())
     };
     let crater = Crater { depth: Some(0.01), rim_diameter: None };

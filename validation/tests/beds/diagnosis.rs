@@ -1,6 +1,6 @@
 //! The diagnosis of a bed, with impacts that take no time.
 
-use diagnosis::beds::{Plan, Stand, Variation, Wish, diagnose_bed};
+use diagnosis::beds::{BedModel, Plan, Variation, Wish, diagnose_bed};
 use diagnosis::missing_force::Reading;
 use diagnosis::observed::Observed;
 use engine::bed::random;
@@ -30,7 +30,7 @@ fn where_nothing_is_hidden_nothing_is_named() {
 fn what_is_hidden_is_named_and_the_error_falls_on_fresh_beds() {
     // Runs on one bed that have much in common are screened alone, others by a design.
     for runs in [0.01, 0.05] {
-        let one = outcome(Hidden::Switch("rolling-resistance", 0.2), runs);
+        let one = outcome(Hidden::BedCandidate("rolling-resistance", 0.2), runs);
         assert!(one.first && one.right && !one.wrong, "{one:?}");
         let [before, after, floor] = one.held_out.unwrap();
         assert!(before > 2.0 * after && after < 2.0 * floor, "{one:?}");
@@ -40,7 +40,7 @@ fn what_is_hidden_is_named_and_the_error_falls_on_fresh_beds() {
 #[test]
 fn what_has_impacts_on_fresh_beds_miss_by_more_than_without_it_is_not_named() {
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: true };
-    let hidden = Hidden::Switch("rolling-resistance", 0.2);
+    let hidden = Hidden::BedCandidate("rolling-resistance", 0.2);
     let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
     let one = case.run(&impacts, &Wish::default(), None).unwrap();
     assert!(one.first, "{one:?}");
@@ -79,7 +79,7 @@ fn another_preparation_is_named_as_one_and_no_physics_is() {
 #[test]
 fn a_bed_that_is_weighed_is_said_to_be_heavier_and_nothing_else() {
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
-    let heavier = Hidden::Switch("grain-density", 0.4);
+    let heavier = Hidden::BedCandidate("grain-density", 0.4);
     let case = Case { is_weighed: true, ..Case::alike(heavier, 0) };
     let one = case.run(&impacts, &Wish::default(), None).unwrap();
     assert_eq!((one.verdict.as_str(), one.named.len()), ("explained-by-preparation", 0), "{one:?}");
@@ -93,13 +93,13 @@ fn where_nothing_is_hidden_model_and_measurements_have_one_force_law_within_its_
     for seed in 0..4 {
         let model = Case::alike(Hidden::Nothing, seed).model().unwrap();
         let empty = campaign(&model);
-        let world = Stand::new(&model, &empty).unwrap();
+        let world = BedModel::new(&model, &empty).unwrap();
         let set = measure(&world, &Variation::default(), (10, seed), &impacts).unwrap();
-        let stand = Stand::new(&model, &set).unwrap();
+        let bed_model = BedModel::new(&model, &set).unwrap();
         let observed = Observed::of(&set);
-        let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
-        let found = diagnose_bed(&stand, &observed, &impacts, plan, seed).unwrap();
-        let object = found.to_json(&stand).unwrap();
+        let plan = Plan::new(&bed_model, &observed, &impacts, &Wish::default()).unwrap();
+        let found = diagnose_bed(&bed_model, &observed, &impacts, plan, seed).unwrap();
+        let object = found.to_json(&bed_model).unwrap();
         let changes = object["bed"]["force_law"]["relative_change"].as_object().unwrap();
         scores.extend(changes.values().map(|one| {
             let [by, se] = ["value", "se"].map(|key| one[key].as_f64().unwrap());
@@ -122,11 +122,11 @@ fn the_force_of_a_named_effect_is_what_the_depths_with_and_without_it_say() {
         case.measured(&impacts, None).unwrap()
     };
     let (_, plain) = measured(Hidden::Nothing);
-    let (model, set) = measured(Hidden::Switch("rolling-resistance", 0.2));
-    let (stand, observed) = (Stand::new(&model, &set).unwrap(), Observed::of(&set));
-    let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
-    let found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
-    let force = &found.to_json(&stand).unwrap()["amplitudes"][0]["force"];
+    let (model, set) = measured(Hidden::BedCandidate("rolling-resistance", 0.2));
+    let (bed_model, observed) = (BedModel::new(&model, &set).unwrap(), Observed::of(&set));
+    let plan = Plan::new(&bed_model, &observed, &impacts, &Wish::default()).unwrap();
+    let found = diagnose_bed(&bed_model, &observed, &impacts, plan, 1).unwrap();
+    let force = &found.to_json(&bed_model).unwrap()["amplitudes"][0]["force"];
     let number = |key: &str| force[key].as_f64().unwrap();
     let at = set.conditions.iter().position(|one| force["condition"] == one.id).unwrap();
     let body = &set.conditions[at];
@@ -149,15 +149,15 @@ fn the_missing_force_of_a_bed_is_that_of_what_is_hidden() {
     let sought = |hidden: Hidden| {
         let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
         let (model, set) = case.measured(&impacts, None).unwrap();
-        let (stand, observed) = (Stand::new(&model, &set).unwrap(), Observed::of(&set));
-        let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
-        let mut found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
+        let (bed_model, observed) = (BedModel::new(&model, &set).unwrap(), Observed::of(&set));
+        let plan = Plan::new(&bed_model, &observed, &impacts, &Wish::default()).unwrap();
+        let mut found = diagnose_bed(&bed_model, &observed, &impacts, plan, 1).unwrap();
         found.seek_missing_force(&set).unwrap();
         found.diagnosis.missing_force.expect("a force")
     };
     // What rolling resistance adds to the force law of the imitation.
     let added = |one: &Reading| strength * (0.12 * one.speed * one.speed + 4.0 * 4.0 * one.depth);
-    let force = sought(Hidden::Switch("rolling-resistance", strength));
+    let force = sought(Hidden::BedCandidate("rolling-resistance", strength));
     assert!(force.formula.is_none() && !force.formula_sought);
     let covered =
         force.readings.iter().filter(|one| (one.force - added(one)).abs() < 1.96 * one.se).count();
@@ -174,7 +174,7 @@ fn the_missing_force_of_a_bed_is_that_of_what_is_hidden() {
 #[test]
 fn craters_beside_depths_name_what_is_hidden_and_alone_they_name_what_might_be() {
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
-    let hidden = Hidden::Switch("rolling-resistance", 0.2);
+    let hidden = Hidden::BedCandidate("rolling-resistance", 0.2);
     let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
     let (model, mut set) = case.measured(&impacts, None).unwrap();
     for run in &mut set.runs {
@@ -182,11 +182,11 @@ fn craters_beside_depths_name_what_is_hidden_and_alone_they_name_what_might_be()
         run.crater = Crater { depth, rim_diameter };
     }
     let diagnosed = |set: &MeasurementSet| {
-        let (stand, observed) = (Stand::new(&model, set).unwrap(), Observed::of(set));
+        let (bed_model, observed) = (BedModel::new(&model, set).unwrap(), Observed::of(set));
         assert!(observed.conditions.iter().all(|one| one.layout.craters() == 2));
-        let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
-        let found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
-        found.to_json(&stand).unwrap()
+        let plan = Plan::new(&bed_model, &observed, &impacts, &Wish::default()).unwrap();
+        let found = diagnose_bed(&bed_model, &observed, &impacts, plan, 1).unwrap();
+        found.to_json(&bed_model).unwrap()
     };
     let both = diagnosed(&set);
     assert_eq!(both["verdict"], "supported", "{}", both["ranking"]);
@@ -239,10 +239,10 @@ fn pushes_into_a_bed_name_what_is_hidden_and_nothing_where_nothing_is() {
     let model = world::pushed();
     for (rolling, effects) in [(0.0, vec![]), (0.2, vec!["rolling-resistance"])] {
         let set = pushes(rolling);
-        let (stand, observed) = (Stand::new(&model, &set).unwrap(), Observed::of(&set));
-        let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
-        let found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
-        let object = found.to_json(&stand).unwrap();
+        let (bed_model, observed) = (BedModel::new(&model, &set).unwrap(), Observed::of(&set));
+        let plan = Plan::new(&bed_model, &observed, &impacts, &Wish::default()).unwrap();
+        let found = diagnose_bed(&bed_model, &observed, &impacts, plan, 1).unwrap();
+        let object = found.to_json(&bed_model).unwrap();
         assert_eq!(
             object["effects"],
             json!(effects),

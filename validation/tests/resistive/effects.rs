@@ -159,19 +159,23 @@ fn one_vertical_condition_shows_little_and_tells_few_apart() {
     for id in ["magnus", "spin-friction", "lift", "anisotropic-drag", "packing", "air-drag"] {
         assert!(of(id).not_testable.is_some(), "{id}");
     }
-    for (id, twins) in [
+    for (id, confounders) in [
         ("yield-stress", &["viscous-drag", "added-mass", "buoyancy", "rail-friction"][..]),
         ("janssen", &["depth-exponent"]),
         ("bottom-wall", &["depth-exponent"]),
         ("camera-scale", &["depth-zero"]),
-        // It is shown by vertical impacts, and they tell it from its twins.
+        // It is shown by vertical impacts, and they tell it from its confounders.
         ("tilt", &[]),
     ] {
-        assert_eq!(of(id).unresolved, twins, "{id}");
+        assert_eq!(of(id).unresolved, confounders, "{id}");
     }
     for candidate in forward.candidates() {
-        for twin in &candidate.unresolved {
-            assert!(of(twin).unresolved.contains(&candidate.id), "{} and {twin}", candidate.id);
+        for confounder in &candidate.unresolved {
+            assert!(
+                of(confounder).unresolved.contains(&candidate.id),
+                "{} and {confounder}",
+                candidate.id
+            );
         }
     }
 }

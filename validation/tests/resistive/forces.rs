@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_4;
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::added_force::Size;
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::forward::Forward;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
@@ -13,7 +13,7 @@ use diagnosis::verdict::{Diagnosis, Status, Verdict};
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
-use intruders::Casting;
+use intruders::AssemblyRequest;
 use measurements::{Bed, Condition, Geometry, Instrument, Kind, MeasurementSet, Run, Sample};
 use rand_pcg::Pcg64;
 use resistive::{Driven, Impact, Recorder};
@@ -61,7 +61,7 @@ fn push(condition: &Condition, hidden: Option<(&str, f64)>, random: &mut Pcg64) 
     }
     let velocity = Vec3::new(0.0, 0.0, -condition.speed);
     let casting =
-        Casting { params: &params, space: Space::Spatial, mass: 0.1, velocity, spin: 0.0 };
+        AssemblyRequest { params: &params, space: Space::Spatial, mass: 0.1, velocity, spin: 0.0 };
     let made = (intruders::find("cylinder").expect("a shape").assembly)(&casting);
     let friction = 18.0 * (1.0 + COEFFICIENTS * normal(random));
     let mut laws = vec![law("two-term-vector", &[("drag", 1.2), ("friction", friction)])];
@@ -130,7 +130,7 @@ fn before(set: &MeasurementSet, observed: &Observed) -> ResistiveForward {
 fn diagnosed(set: &MeasurementSet) -> Diagnosis {
     let observed = Observed::of(set);
     let forward = before(set, &observed);
-    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
+    diagnose(&FitProblem { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
         .expect("forces are finite")
 }
 

@@ -1,8 +1,8 @@
 //! A candidate of a model file in a diagnosis.
 
 use configs::{LoadOptions, Model, ModelSource};
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::forward::{Forward, Request, Scatter};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
@@ -103,8 +103,8 @@ fn a_candidate_of_the_model_is_named_where_it_is_hidden_in_the_data() {
     let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("a model");
     let own = forward.candidates().last().expect("the candidate of the model is the last");
     assert_eq!((own.id.as_str(), own.unit.as_str(), own.max), ("late-drag", "1", 5.0));
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let found = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let found = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
     let told = match found.verdict {
         Verdict::Supported => &found.effects,
         Verdict::NotSeparable => &found.not_separable,

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
-use intruders::Casting;
+use intruders::AssemblyRequest;
 use resistive::{Driven, Impact, Recorder, Sample};
 
 use super::rig::{BED, law};
@@ -26,7 +26,7 @@ fn pushed(
     let params = ParamTable::from_iter([("diameter", DIAMETER), ("shaft_diameter", 0.0), size]);
     let velocity = Vec3::new(0.0, 0.0, -SPEED);
     let casting =
-        Casting { params: &params, space: Space::Spatial, mass: 0.1, velocity, spin: 0.0 };
+        AssemblyRequest { params: &params, space: Space::Spatial, mass: 0.1, velocity, spin: 0.0 };
     let made = (intruders::find(shape).expect("a shape").assembly)(&casting);
     Impact::new(Box::new(Driven::new(made.assembly)), laws, BED, made.start)
 }

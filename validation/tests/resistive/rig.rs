@@ -3,7 +3,7 @@
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
-use intruders::Casting;
+use intruders::AssemblyRequest;
 use resistive::{Coefficients, Expression, find_resistance};
 use resistive::{Ending, Impact, Recorder, ResistanceLaw, Surroundings};
 
@@ -71,7 +71,8 @@ pub(crate) fn launched(
     spin: f64,
 ) -> Impact {
     let params = ParamTable::from_iter([("diameter", DIAMETER)]);
-    let casting = Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin };
+    let casting =
+        AssemblyRequest { params: &params, space: Space::Spatial, mass: MASS, velocity, spin };
     let shape = intruders::find("sphere").expect("the sphere is registered");
     let made = (shape.assembly)(&casting);
     Impact::new(made.assembly, laws, bed, made.start)

@@ -1,8 +1,8 @@
 //! Sets of a sphere that falls into the bed of the rig, and their diagnosis.
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::{ForwardError, ResistiveForward};
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -84,7 +84,7 @@ pub(crate) fn diagnosed(set: &MeasurementSet) -> Diagnosis {
 pub(crate) fn diagnosed_from(model: &str, set: &MeasurementSet) -> Diagnosis {
     let observed = Observed::of(set);
     let forward = forward_of(model, set, &observed).expect("a model for spheres");
-    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
+    diagnose(&FitProblem { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
         .expect("spheres stop")
 }
 

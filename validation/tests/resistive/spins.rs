@@ -5,7 +5,7 @@ use diagnosis::verdict::Verdict;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
-use intruders::Casting;
+use intruders::AssemblyRequest;
 use measurements::{Condition, Instrument, Kind, MeasurementSet, Run, Sample, StopDefinition};
 use rand_pcg::Pcg64;
 use resistive::{Impact, State, Trajectory};
@@ -45,7 +45,7 @@ fn link(condition: &Condition, factor: f64) -> Impact {
     }
     let velocity = Vec3::new(0.0, 0.0, -condition.speed);
     let casting =
-        Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin: 0.0 };
+        AssemblyRequest { params: &params, space: Space::Spatial, mass: MASS, velocity, spin: 0.0 };
     let made = (intruders::find("link").expect("the link is registered").assembly)(&casting);
     let values = COEFFICIENTS.map(|(key, value)| (key, factor * value));
     Impact::new(made.assembly, vec![law("link", &values)], BED, made.start)

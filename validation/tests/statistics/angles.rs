@@ -1,7 +1,7 @@
 //! Impact angles that are not what a set states, and ways forward that are not zero at contact.
 
-use diagnosis::bench::{Bench, DEFAULT_SEED, Fitted};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem, Fitted};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::sensitivity::Point;
@@ -33,19 +33,19 @@ fn measured(mut laboratory: Laboratory, off: impl Fn(usize) -> f64) -> Measureme
     set
 }
 
-fn with_bench<T>(set: &MeasurementSet, ask: impl FnOnce(&Bench<'_>) -> T) -> T {
+fn with_bench<T>(set: &MeasurementSet, ask: impl FnOnce(&FitProblem<'_>) -> T) -> T {
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres");
-    ask(&Bench { set, observed: &observed, forward: &forward })
+    ask(&FitProblem { set, observed: &observed, forward: &forward })
 }
 
 fn diagnosis(set: &MeasurementSet) -> Diagnosis {
-    with_bench(set, |bench| diagnose(bench, DEFAULT_SEED).expect("spheres stop"))
+    with_bench(set, |problem| diagnose(problem, DEFAULT_SEED).expect("spheres stop"))
 }
 
 fn baseline_of(set: &MeasurementSet) -> Fitted {
-    with_bench(set, |bench| bench.fit(&Point::start(bench.forward)).expect("spheres stop"))
+    with_bench(set, |problem| problem.fit(&Point::start(problem.forward)).expect("spheres stop"))
 }
 
 /// The value of an error of the apparatus, and its standard error.

@@ -1,7 +1,7 @@
 //! The verdicts.
 
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::held_out::LeftOut;
 use diagnosis::observed::Observed;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
@@ -17,7 +17,7 @@ fn diagnosis(laboratory: &Laboratory, set: &MeasurementSet) -> Diagnosis {
 fn diagnosis_among(laboratory: &Laboratory, set: &MeasurementSet, effects: &[Effect]) -> Diagnosis {
     let observed = Observed::of(set);
     let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), effects);
-    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
+    diagnose(&FitProblem { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
         .expect("spheres stop")
 }
 
@@ -157,8 +157,8 @@ fn an_effect_that_the_data_cannot_show_is_listed_and_not_ranked() {
     let observed = Observed::of(&set);
     let mut forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &Effect::LISTED);
     forward.forbid(3);
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let found = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let found = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
     let last = found.ranking.last().expect("there are effects");
     assert_eq!((last.id.as_str(), last.testable), ("buoyancy", false));
     assert_eq!(last.status, Status::NotTestable);

@@ -1,8 +1,8 @@
 //! The next experiment.
 
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
-use diagnosis::next::{Next, Recommendation, Sequel, recommend, sequel};
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::next::{FollowUp, Next, Recommendation, follow_up, recommend};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -12,7 +12,7 @@ use validation::benchmark::trial::baseline;
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, Setting};
 
-/// Amplitudes, of which some are seen and not told from their twins.
+/// Amplitudes, of which some are seen and not told from their confounders.
 const STRENGTHS: [f64; 6] = [4.0, 3.0, 2.0, 1.5, 1.2, 0.9];
 
 /// One sphere straight down at six speeds, and what is hidden.
@@ -30,13 +30,13 @@ fn next(set: &MeasurementSet) -> (Diagnosis, Option<Next>) {
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres");
-    let bench = Bench { set, observed: &observed, forward: &forward };
-    let mut diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
-    let next = recommend(&bench, &model, &mut diagnosis);
+    let problem = FitProblem { set, observed: &observed, forward: &forward };
+    let mut diagnosis = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
+    let next = recommend(&problem, &model, &mut diagnosis);
     (diagnosis, next)
 }
 
-/// A set, changed, in which `effect` is strong enough to be seen and too weak to be told from its twins.
+/// A set, changed, in which `effect` is strong enough to be seen and too weak to be told from its confounders.
 fn left_open(
     effect: Effect,
     changed: impl Fn(&MeasurementSet) -> MeasurementSet,
@@ -123,7 +123,7 @@ fn where_only_what_was_measured_is_feasible_nothing_is_recommended_that_tells_no
 }
 
 /// What the first six conditions of `set` expect of the others.
-fn expected_of_the_rest(set: &MeasurementSet) -> Sequel {
+fn expected_of_the_rest(set: &MeasurementSet) -> FollowUp {
     let part = |is_early: bool| {
         let mut part = set.clone();
         part.runs.retain(|run| (run.condition < 6) == is_early);
@@ -136,9 +136,9 @@ fn expected_of_the_rest(set: &MeasurementSet) -> Sequel {
         ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres")
     };
     let (before, after) = (forward(&early, &observed), forward(&late, &new));
-    let bench = Bench { set: &early, observed: &observed, forward: &before };
-    let diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
-    sequel(&bench, &diagnosis, (&new, &after)).expect("spheres stop").expect("it predicts")
+    let problem = FitProblem { set: &early, observed: &observed, forward: &before };
+    let diagnosis = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
+    follow_up(&problem, &diagnosis, (&new, &after)).expect("spheres stop").expect("it predicts")
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn new_runs_come_as_what_is_there_expects_and_it_stays_the_likeliest() {
         Setting { speed, angle, mass, ..like }
     }));
     let n = set.conditions.len();
-    let sequels: Vec<Sequel> = (1..=5)
+    let sequels: Vec<FollowUp> = (1..=5)
         .map(|seed| {
             let mut all = laboratory.measure(1);
             all.runs.retain(|run| run.condition < n);
@@ -165,24 +165,26 @@ fn new_runs_come_as_what_is_there_expects_and_it_stays_the_likeliest() {
         })
         .collect();
     let mut offs = Vec::new();
-    for sequel in &sequels {
-        let truth = sequel.hypotheses.iter().find(|one| one.id == effect.id()).expect("it is open");
-        assert!(truth.chi2_per_number < 2.0, "{sequel:?}");
-        assert_eq!(sequel.came.len(), best.len());
-        offs.extend(sequel.came.iter().map(|came| {
+    for follow_up in &sequels {
+        let truth =
+            follow_up.hypotheses.iter().find(|one| one.id == effect.id()).expect("it is open");
+        assert!(truth.chi2_per_number < 2.0, "{follow_up:?}");
+        assert_eq!(follow_up.came.len(), best.len());
+        offs.extend(follow_up.came.iter().map(|came| {
             let of_truth =
                 came.expected.iter().find(|one| one.id == effect.id()).expect("it is there");
             (came.measured - of_truth.value) / of_truth.se
         }));
     }
-    // One in a hundred is unexpected by chance, and one in five may be outweighed by a twin.
-    let most = |sequel: &Sequel| sequel.hypotheses.iter().map(|one| one.after).fold(0.0, f64::max);
-    let leads = |sequel: &&Sequel| {
-        let truth = sequel.hypotheses.iter().find(|one| one.id == effect.id());
-        truth.is_some_and(|truth| truth.after >= most(sequel))
+    // One in a hundred is unexpected by chance, and one in five may be outweighed by a confounder.
+    let most =
+        |follow_up: &FollowUp| follow_up.hypotheses.iter().map(|one| one.after).fold(0.0, f64::max);
+    let leads = |follow_up: &&FollowUp| {
+        let truth = follow_up.hypotheses.iter().find(|one| one.id == effect.id());
+        truth.is_some_and(|truth| truth.after >= most(follow_up))
     };
     assert!(sequels.iter().filter(leads).count() >= 4, "{sequels:?}");
-    assert!(sequels.iter().filter(|sequel| sequel.is_unexpected).count() <= 1, "{sequels:?}");
+    assert!(sequels.iter().filter(|follow_up| follow_up.is_unexpected).count() <= 1, "{sequels:?}");
     let mean_square = offs.iter().map(|off| off * off).sum::<f64>() / offs.len() as f64;
     // The 99.9 % point of χ² over its degrees of freedom, for five.
     assert!(mean_square < 4.1, "{offs:?}");

@@ -1,6 +1,6 @@
 //! What is learned from repeats.
 
-use diagnosis::bench::Bench;
+use diagnosis::fit_problem::FitProblem;
 use diagnosis::noise::Noise;
 use diagnosis::observed::Observed;
 use diagnosis::sensitivity::{Point, Spread};
@@ -25,8 +25,8 @@ fn scatter_of_coefficients_and_path_is_recovered() {
         let set = laboratory.measure(1);
         let observed = Observed::of(&set);
         let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &[]);
-        let bench = Bench { set: &set, observed: &observed, forward: &forward };
-        let noise = bench.fit(&Point::start(&forward)).expect("spheres stop").noise;
+        let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+        let noise = problem.fit(&Point::start(&forward)).expect("spheres stop").noise;
         let Spread { coefficient, path, .. } = noise.spread;
         // A standard deviation from 96 numbers per input is known to 7 %; coefficients and path move a
         // trajectory alike, which doubles that. Between two and three of those.
@@ -50,8 +50,8 @@ fn the_right_model_fits_to_its_noise_and_its_parameters_come_back() {
         let set = laboratory.measure(seed);
         let observed = Observed::of(&set);
         let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &Effect::LISTED);
-        let bench = Bench { set: &set, observed: &observed, forward: &forward };
-        let fit = bench.fit(&Point::start(&forward)).expect("spheres stop").fit;
+        let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+        let fit = problem.fit(&Point::start(&forward)).expect("spheres stop").fit;
         chi2_per_n += fit.chi2 / fit.residual.len() as f64 / sets as f64;
         for (at, (value, truth)) in fit.point.parameters.iter().zip(TRUTH).enumerate() {
             let se = fit.standard_error(at).expect("no bound is near");
@@ -74,13 +74,13 @@ fn a_camera_alone_would_have_been_overconfident() {
     let set = laboratory.measure(1);
     let observed = Observed::of(&set);
     let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &Effect::LISTED);
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
     let start = Point::start(&forward);
-    let honest = bench.fit(&start).expect("spheres stop");
+    let honest = problem.fit(&start).expect("spheres stop");
     // Readings of 0.1 mm and beds that are all the same.
     let camera = Noise { spread: Noise::stated().spread, ..honest.noise };
-    let weights = bench.weights(&honest.fit.point, &camera, &observed.fit).expect("spheres stop");
-    let fit = bench.data(&weights).fit(&start).expect("spheres stop");
+    let weights = problem.weights(&honest.fit.point, &camera, &observed.fit).expect("spheres stop");
+    let fit = problem.data(&weights).fit(&start).expect("spheres stop");
     // The right model would be refused: beds make means of five differ by millimetres.
     assert!(fit.chi2 / fit.residual.len() as f64 > 5.0, "{}", fit.chi2);
     let [naive, honest] = [&fit, &honest.fit].map(|fit| fit.standard_error(0).expect("it is free"));
@@ -94,11 +94,11 @@ fn an_amplitude_beyond_its_range_is_held_at_the_bound() {
     let set = laboratory.measure(1);
     let observed = Observed::of(&set);
     let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &[Effect::Buoyancy]);
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let without = bench.fit(&Point::start(&forward)).expect("spheres stop");
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let without = problem.fit(&Point::start(&forward)).expect("spheres stop");
     let mut start = without.fit.point.clone();
     start.effects.push((0, 1.0));
-    let with = bench.data(&without.weights).fit(&start).expect("spheres stop");
+    let with = problem.data(&without.weights).fit(&start).expect("spheres stop");
     assert_eq!(with.point.effects, [(0, 0.0)]);
     assert!(with.standard_error(2).is_none() && with.n_free() == 2);
     // The rest is fitted as if it were absent, to the tolerance of the search.

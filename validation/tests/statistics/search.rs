@@ -1,6 +1,6 @@
 //! Where the search of a fit ends: not at zero, and not at a bound, unless the data are there.
 
-use diagnosis::bench::Bench;
+use diagnosis::fit_problem::FitProblem;
 use diagnosis::observed::Observed;
 use diagnosis::sensitivity::Point;
 
@@ -13,10 +13,10 @@ fn a_fit_from_nothing_or_from_the_end_of_a_range_finds_what_one_from_between_doe
     let set = laboratory.measure(1);
     let observed = Observed::of(&set);
     let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &[Effect::Buoyancy]);
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
     let between = Point { parameters: vec![1.0, 10.0], effects: vec![(0, 1.0)] };
-    let fitted = bench.fit(&between).expect("spheres stop");
-    let data = bench.data(&fitted.weights);
+    let fitted = problem.fit(&between).expect("spheres stop");
+    let data = problem.data(&fitted.weights);
     // A logarithm has no derivative at zero, and comes to none from next to it.
     for (drag, friction, buoyancy) in [
         (0.0, 10.0, 1.0),

@@ -1,7 +1,7 @@
 //! Sets of several beds: what differs between them is a term of each but the first, and no physics.
 
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -34,7 +34,7 @@ fn diagnosis(set: &MeasurementSet) -> Diagnosis {
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres");
-    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
+    diagnose(&FitProblem { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
         .expect("spheres stop")
 }
 

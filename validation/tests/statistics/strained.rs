@@ -1,7 +1,7 @@
 //! Effects so strong that a fit without them makes up for them by wrong masses, scales and speeds.
 
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -31,8 +31,8 @@ fn diagnosis(set: &MeasurementSet) -> Diagnosis {
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres");
-    let bench = Bench { set, observed: &observed, forward: &forward };
-    diagnose(&bench, DEFAULT_SEED).expect("spheres stop")
+    let problem = FitProblem { set, observed: &observed, forward: &forward };
+    diagnose(&problem, DEFAULT_SEED).expect("spheres stop")
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::compare::{Comparison, Revision, compare};
 use diagnosis::diagnose::diagnose;
+use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::force_error::{ForceCell, ForceErrors, Trend};
 use diagnosis::observed::Observed;
 use diagnosis::where_it_fails::{FILES, WhereItFails};
@@ -173,8 +173,8 @@ fn a_drift_over_the_order_of_runs_is_reported_and_hangs_on_the_order_alone() {
 
     let observed = Observed::of(&set);
     let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &[Effect::Lift]);
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let found = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let found = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
     assert!(found.unexplained.depends_on.contains(&"order"), "{:?}", found.unexplained);
     // The rows of the table in another order are the same measurements.
     set.runs.reverse();
@@ -187,9 +187,9 @@ fn the_signature_of_the_hidden_effect_takes_the_residual_away() {
     let set = laboratory.measure(1);
     let observed = Observed::of(&set);
     let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &Effect::LISTED);
-    let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
-    let found = WhereItFails::of_diagnosis(&bench, "two-term", &diagnosis, DEFAULT_SEED);
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let diagnosis = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
+    let found = WhereItFails::of_diagnosis(&problem, "two-term", &diagnosis, DEFAULT_SEED);
     let files = written(&found.expect("spheres stop"));
     assert!(FILES.iter().all(|name| files.contains_key(*name)), "{:?}", files.keys());
     let (header, rows) = table(&files["signatures.csv"]);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use engine::fluid::Fluid;
 use engine::params::{ParamSpec, ParamTable};
-use intruders::Casting;
+use intruders::AssemblyRequest;
 use resistive::{Approach, Assembly, Driven, Impact, ResistanceLaw, Space, Surroundings};
 use resistive::{Coefficients, Effect, Expression, OwnEffect, ResistanceEntry};
 
@@ -102,7 +102,7 @@ impl ResistiveMedium {
     /// surface, at x = 0.
     #[must_use]
     pub fn impact(&self, intruder: &Intruder, launch: &Launch) -> Impact {
-        let launchable = (intruder.shape.assembly)(&Casting {
+        let launchable = (intruder.shape.assembly)(&AssemblyRequest {
             params: &intruder.params,
             space: self.space,
             mass: intruder.mass,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use configs::{ConfigError, Model};
-use diagnosis::beds::{BaselineError, BedError, Plan, Stand, Wish, diagnose_bed, unaffordable};
+use diagnosis::beds::{BaselineError, BedError, BedModel, Plan, Wish, diagnose_bed, unaffordable};
 use diagnosis::observed::Observed;
 use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::MeasurementSet;
@@ -22,7 +22,7 @@ use crate::speed::lammps::Lammps;
 const REPEATS: usize = 10;
 const FEW: usize = 5;
 
-/// A switch that a bed hides which is not weighed.
+/// A candidate that a bed hides which is not weighed.
 const GRAIN_DENSITY: &str = "grain-density";
 
 /// Beds of LAMMPS that are weighed.
@@ -116,13 +116,16 @@ pub fn quick() -> Vec<Case> {
         ..Case::small(Hidden::Nothing, 0)
     });
     let effects = [
-        Case { is_weighed: true, ..Case::small(Hidden::Switch("rolling-resistance", 0.17), 0) },
+        Case {
+            is_weighed: true,
+            ..Case::small(Hidden::BedCandidate("rolling-resistance", 0.17), 0)
+        },
         Case {
             prepared: Prepared::Rough,
             is_weighed: true,
-            ..Case::small(Hidden::Switch("grain-friction", 0.8), 0)
+            ..Case::small(Hidden::BedCandidate("grain-friction", 0.8), 0)
         },
-        Case::small(Hidden::Switch(GRAIN_DENSITY, 0.4), 0),
+        Case::small(Hidden::BedCandidate(GRAIN_DENSITY, 0.4), 0),
         Case { is_weighed: true, ..Case::small(Hidden::Unlisted, 0) },
     ];
     nothing.chain(effects).collect()
@@ -134,8 +137,8 @@ pub fn quick() -> Vec<Case> {
 pub fn prepared(draws: u64) -> Vec<Case> {
     let hidden = [
         Hidden::Nothing,
-        Hidden::Switch("rolling-resistance", 0.17),
-        Hidden::Switch("grain-friction", 0.8),
+        Hidden::BedCandidate("rolling-resistance", 0.17),
+        Hidden::BedCandidate("grain-friction", 0.8),
     ];
     let ways = Prepared::ALL.map(|prepared| (prepared, &[false, true][..]));
     crossed((10_000, draws), &hidden, &ways, Case::small)
@@ -147,8 +150,8 @@ pub fn prepared(draws: u64) -> Vec<Case> {
 pub fn by_lammps(draws: u64) -> Vec<Case> {
     let hidden = [
         Hidden::Nothing,
-        Hidden::Switch("rolling-resistance", 0.25),
-        Hidden::Switch("grain-friction", 1.5),
+        Hidden::BedCandidate("rolling-resistance", 0.25),
+        Hidden::BedCandidate("grain-friction", 1.5),
         Hidden::Unlisted,
     ];
     let ways = Prepared::ALL.into_iter().filter(|one| *one != Prepared::Tapped);
@@ -157,7 +160,12 @@ pub fn by_lammps(draws: u64) -> Vec<Case> {
     let mut cases = crossed((20_000, draws), &hidden, &ways, case);
     // The model is prepared to a bed that is weighed.
     let alone: Vec<_> = ways.iter().map(|&(prepared, _)| (prepared, &[false][..])).collect();
-    cases.extend(crossed((25_000, draws), &[Hidden::Switch(GRAIN_DENSITY, 0.4)], &alone, case));
+    cases.extend(crossed(
+        (25_000, draws),
+        &[Hidden::BedCandidate(GRAIN_DENSITY, 0.4)],
+        &alone,
+        case,
+    ));
     cases
 }
 
@@ -167,8 +175,8 @@ pub fn by_lammps(draws: u64) -> Vec<Case> {
 pub fn of_spheres(draws: u64) -> Vec<Case> {
     let hidden = [
         Hidden::Nothing,
-        Hidden::Switch("rolling-resistance", 0.17),
-        Hidden::Switch("grain-friction", 0.8),
+        Hidden::BedCandidate("rolling-resistance", 0.17),
+        Hidden::BedCandidate("grain-friction", 0.8),
         Hidden::Unlisted,
     ];
     let ways: [(_, &[bool]); 3] =
@@ -198,28 +206,28 @@ fn crossed(
     cases
 }
 
-/// Six switches at two strengths, nothing, and what is not listed; `draws` of each.
+/// Six candidates at two strengths, nothing, and what is not listed; `draws` of each.
 #[must_use]
 pub fn all(draws: u64) -> Vec<Case> {
-    use Hidden::{Nothing, Switch, Unlisted};
+    use Hidden::{BedCandidate, Nothing, Unlisted};
     let hidden = [
-        Switch("rolling-resistance", 0.1),
-        Switch("rolling-resistance", 0.3),
-        Switch("cohesion-dmt", 5.0),
-        Switch("cohesion-dmt", 15.0),
-        Switch("grain-friction", 1.0),
-        Switch("grain-friction", 2.5),
+        BedCandidate("rolling-resistance", 0.1),
+        BedCandidate("rolling-resistance", 0.3),
+        BedCandidate("cohesion-dmt", 5.0),
+        BedCandidate("cohesion-dmt", 15.0),
+        BedCandidate("grain-friction", 1.0),
+        BedCandidate("grain-friction", 2.5),
         Nothing,
         Nothing,
         Nothing,
         Unlisted,
         Unlisted,
-        Switch("pore-air", 5.0),
-        Switch("pore-air", 15.0),
-        Switch("side-wall", 0.1),
-        Switch("side-wall", 0.3),
-        Switch(GRAIN_DENSITY, 0.4),
-        Switch(GRAIN_DENSITY, -0.25),
+        BedCandidate("pore-air", 5.0),
+        BedCandidate("pore-air", 15.0),
+        BedCandidate("side-wall", 0.1),
+        BedCandidate("side-wall", 0.3),
+        BedCandidate(GRAIN_DENSITY, 0.4),
+        BedCandidate(GRAIN_DENSITY, -0.25),
     ];
     let each = hidden.iter().enumerate();
     // Repeated entries of the list are other draws too.
@@ -271,12 +279,12 @@ impl Case {
         let start = std::time::Instant::now();
         let (model, set) = self.measured(place, lammps)?;
         let observed = Observed::of(&set);
-        let stand = Stand::new(&model, &set).map_err(BedError::from)?;
-        let plan = Plan::new(&stand, &observed, place, wish)?;
+        let bed_model = BedModel::new(&model, &set).map_err(BedError::from)?;
+        let plan = Plan::new(&bed_model, &observed, place, wish)?;
         let (diagnosis, impacts) = match plan.fits() {
             false => (unaffordable(&plan), 0),
             true => {
-                let found = diagnose_bed(&stand, &observed, place, plan, self.seed + 1)?;
+                let found = diagnose_bed(&bed_model, &observed, place, plan, self.seed + 1)?;
                 (found.diagnosis, found.impacts)
             }
         };
@@ -313,18 +321,18 @@ impl Case {
     ) -> Result<(Model, MeasurementSet), CaseError> {
         let model = self.model().map_err(|why| BedError::from(BaselineError::from(why)))?;
         let empty = campaign(&model);
-        let stand = Stand::new(&model, &empty).map_err(BedError::from)?;
+        let bed_model = BedModel::new(&model, &empty).map_err(BedError::from)?;
         let set = match lammps.filter(|_| self.is_by_lammps) {
-            Some(lammps) => self.of_lammps(lammps, &stand)?,
+            Some(lammps) => self.of_lammps(lammps, &bed_model)?,
             None if self.is_by_lammps => return Err(CaseError::NoWorld(self.name())),
-            None => self.of_plunge(&stand, place)?,
+            None => self.of_plunge(&bed_model, place)?,
         };
         Ok((model, set))
     }
 
     fn of_plunge(
         &self,
-        world: &Stand<'_>,
+        world: &BedModel<'_>,
         place: &dyn Impacts,
     ) -> Result<MeasurementSet, BedError> {
         let variation = self.prepared.variation(world.grains()).and(self.hidden.variation(world));
@@ -338,11 +346,11 @@ impl Case {
     fn of_lammps(
         &self,
         (lammps, folder): (&Lammps, &Path),
-        stand: &Stand<'_>,
+        bed_model: &BedModel<'_>,
     ) -> Result<MeasurementSet, CaseError> {
-        let world = World::of(stand.grains(), self.hidden, self.prepared)
+        let world = World::of(bed_model.grains(), self.hidden, self.prepared)
             .ok_or_else(|| CaseError::NoWorld(self.name()))?;
-        let (mut set, lies) = world.measure(lammps, stand.set, (FEW, self.seed), folder)?;
+        let (mut set, lies) = world.measure(lammps, bed_model.set, (FEW, self.seed), folder)?;
         set.instrument.level_sigma = Some(LEVEL);
         if self.is_weighed {
             set.bed = stated(&lies[..WEIGHED.min(lies.len())], set.bed, self.seed);
@@ -356,7 +364,7 @@ impl Case {
             _ => diagnosis.effects.clone(),
         };
         let truth = match self.hidden {
-            Hidden::Switch(id, _) => Some(id),
+            Hidden::BedCandidate(id, _) => Some(id),
             Hidden::Nothing | Hidden::Unlisted => None,
         };
         let [right, wrong] = self.hidden.scored(diagnosis.verdict, &named);

@@ -1,10 +1,10 @@
 //! What is hidden in a bed.
 
 use configs::Change;
-use diagnosis::beds::{SWITCHES, Stand, Variation};
+use diagnosis::beds::{BED_CANDIDATES, BedModel, Variation};
 use diagnosis::verdict::Verdict;
 
-/// Factor on gravity: an effect that no switch has.
+/// Factor on gravity: an effect that no candidate has.
 pub(super) const LIGHTER: f64 = 0.7;
 
 /// What the name of an effect that is not listed begins with.
@@ -15,8 +15,8 @@ pub(super) const UNLISTED: &str = "less gravity";
 pub enum Hidden {
     /// Nothing.
     Nothing,
-    /// A switch at an amplitude.
-    Switch(&'static str, f64),
+    /// A candidate at an amplitude.
+    BedCandidate(&'static str, f64),
     /// Less gravity than the set states, which no candidate is.
     Unlisted,
 }
@@ -27,7 +27,7 @@ impl Hidden {
     pub fn name(self) -> String {
         match self {
             Self::Nothing => "nothing".to_owned(),
-            Self::Switch(id, q) => format!("{id} {q}"),
+            Self::BedCandidate(id, q) => format!("{id} {q}"),
             Self::Unlisted => format!("{UNLISTED}, {LIGHTER} of what is stated"),
         }
     }
@@ -36,11 +36,13 @@ impl Hidden {
     /// names nothing where something listed is hidden.
     pub(super) fn scored(self, verdict: Verdict, named: &[String]) -> [bool; 2] {
         let is_in = match self {
-            Self::Switch(id, _) => named.iter().any(|one| one == id) && verdict != Verdict::Pair,
+            Self::BedCandidate(id, _) => {
+                named.iter().any(|one| one == id) && verdict != Verdict::Pair
+            }
             Self::Nothing | Self::Unlisted => false,
         };
         let right = match self {
-            Self::Switch(..) => is_in && named.len() <= 3,
+            Self::BedCandidate(..) => is_in && named.len() <= 3,
             Self::Nothing => matches!(
                 verdict,
                 Verdict::NothingDetected
@@ -53,15 +55,17 @@ impl Hidden {
         [right, !named.is_empty() && !is_in]
     }
 
-    pub(super) fn variation(self, stand: &Stand<'_>) -> Variation {
+    pub(super) fn variation(self, bed_model: &BedModel<'_>) -> Variation {
         match self {
             Self::Nothing => Variation::default(),
-            Self::Switch(id, q) => {
-                let switch = SWITCHES.iter().find(|switch| switch.id == id);
-                switch.map_or_else(Variation::default, |one| one.change(stand.grains(), q))
+            Self::BedCandidate(id, q) => {
+                let bed_candidate =
+                    BED_CANDIDATES.iter().find(|bed_candidate| bed_candidate.id == id);
+                bed_candidate
+                    .map_or_else(Variation::default, |one| one.change(bed_model.grains(), q))
             }
             Self::Unlisted => {
-                let gravity = stand.grains().medium.gravity;
+                let gravity = bed_model.grains().medium.gravity;
                 Variation::before(Change::Gravity(LIGHTER * gravity))
             }
         }
@@ -79,7 +83,7 @@ mod tests {
             hidden.scored(verdict, &named)
         };
         let (right, neither, wrong) = ([true, false], [false, false], [false, true]);
-        let packing = Hidden::Switch("packing", 1.0);
+        let packing = Hidden::BedCandidate("packing", 1.0);
         assert_eq!(scored(packing, Verdict::Supported, &["packing"]), right);
         assert_eq!(scored(packing, Verdict::NotSeparable, &["side-wall", "packing"]), right);
         assert_eq!(scored(packing, Verdict::NotSeparable, &["a", "b", "c", "packing"]), neither);

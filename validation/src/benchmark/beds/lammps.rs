@@ -103,10 +103,10 @@ impl<'a> World<'a> {
         match hidden {
             Hidden::Nothing => {}
             Hidden::Unlisted => world.lighter = LIGHTER,
-            Hidden::Switch("grain-density", q) => world.heavier = 1.0 + q,
-            Hidden::Switch("rolling-resistance", q) => world.impact.rolling = q,
-            Hidden::Switch("grain-friction", q) => world.impact.friction *= 1.0 + q,
-            Hidden::Switch(..) => return None,
+            Hidden::BedCandidate("grain-density", q) => world.heavier = 1.0 + q,
+            Hidden::BedCandidate("rolling-resistance", q) => world.impact.rolling = q,
+            Hidden::BedCandidate("grain-friction", q) => world.impact.friction *= 1.0 + q,
+            Hidden::BedCandidate(..) => return None,
         }
         Some(world)
     }
@@ -422,7 +422,7 @@ mod tests {
     #[test]
     fn what_is_hidden_acts_during_the_impact_alone_and_a_preparation_before_it_alone() {
         let model = Case::small(Hidden::Nothing, 0).model().unwrap();
-        let rolling = Hidden::Switch("rolling-resistance", 0.25);
+        let rolling = Hidden::BedCandidate("rolling-resistance", 0.25);
         let input = with(&model, rolling, Prepared::Rough).unwrap().input(1.0, 7);
         let (before, during) = input.split_once("create_atoms 3 single").unwrap();
         let settling = "0.66 rolling sds 100 0.02 0 damping mass_velocity";
@@ -439,7 +439,7 @@ mod tests {
     fn every_grain_has_the_mass_of_the_model_whether_sizes_are_spread_or_not() {
         let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         for (prepared, heavier) in [(Prepared::Spread, 1.0), (Prepared::Alike, 1.4)] {
-            let hidden = Hidden::Switch("grain-density", heavier - 1.0);
+            let hidden = Hidden::BedCandidate("grain-density", heavier - 1.0);
             let world = with(&model, hidden, prepared).unwrap();
             let input = world.input(1.0, 7);
             let density: f64 = input
@@ -462,7 +462,7 @@ mod tests {
     fn a_tapped_bed_and_other_effects_are_no_worlds_of_lammps() {
         let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         assert!(with(&model, Hidden::Nothing, Prepared::Tapped).is_none());
-        assert!(with(&model, Hidden::Switch("pore-air", 5.0), Prepared::Alike).is_none());
+        assert!(with(&model, Hidden::BedCandidate("pore-air", 5.0), Prepared::Alike).is_none());
     }
 
     #[test]

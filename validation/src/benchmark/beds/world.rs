@@ -11,7 +11,7 @@ use runner::beds::{Impacts, Lie, Record};
 
 use super::super::chance::normal;
 use diagnosis::beds::observables::{at, depth_at_contact};
-use diagnosis::beds::{BedError, Stand, Variation};
+use diagnosis::beds::{BedError, BedModel, Variation};
 
 /// The analyst's model of the bed.
 pub(super) const MODEL: &str = include_str!("model.toml");
@@ -95,44 +95,44 @@ fn condition(model: &Model, speed: f64, role: Role) -> Condition {
     }
 }
 
-/// `repeats` runs under every condition of the set of `stand`, whose model is changed by `hidden`; the
+/// `repeats` runs under every condition of the set of `bed_model`, whose model is changed by `hidden`; the
 /// beds and the noise of the camera follow from `seed`.
 ///
 /// # Errors
 /// If the impacts cannot be run.
 pub fn measure(
-    stand: &Stand<'_>,
+    bed_model: &BedModel<'_>,
     hidden: &Variation,
     (repeats, seed): (usize, u64),
     place: &dyn Impacts,
 ) -> Result<MeasurementSet, BedError> {
-    let conditions: Vec<usize> = (0..stand.set.conditions.len()).collect();
-    let draws = stand.draws(SEEDS * (1 + seed as usize), repeats, conditions.len());
-    let records = place.run(&stand.jobs(&conditions, &draws, hidden)?)?;
-    let mut set = stand.set.clone();
+    let conditions: Vec<usize> = (0..bed_model.set.conditions.len()).collect();
+    let draws = bed_model.draws(SEEDS * (1 + seed as usize), repeats, conditions.len());
+    let records = place.run(&bed_model.jobs(&conditions, &draws, hidden)?)?;
+    let mut set = bed_model.set.clone();
     for (number, record) in records.iter().enumerate() {
         let condition = number / repeats;
         if let Some(record) = record {
-            let seen = seen(record, (condition, stand.set), (number, seed), Errors::default());
+            let seen = seen(record, (condition, bed_model.set), (number, seed), Errors::default());
             set.runs.push(seen);
         }
     }
     Ok(set)
 }
 
-/// What one would say of the bed of the set of `stand` who looks at three beds with `hidden`, with errors of his own.
+/// What one would say of the bed of the set of `bed_model` who looks at three beds with `hidden`, with errors of his own.
 ///
 /// # Errors
 /// If the beds cannot be prepared.
 pub(super) fn weighed(
-    stand: &Stand<'_>,
+    bed_model: &BedModel<'_>,
     hidden: &Variation,
     seed: u64,
     place: &dyn Impacts,
 ) -> Result<Bed, BedError> {
-    let draws = stand.draws(SEEDS * (1 + seed as usize), 3, 1);
-    let lies = place.lies(&stand.jobs(&[0], &draws, hidden)?)?;
-    Ok(stated(&lies, stand.set.bed, seed))
+    let draws = bed_model.draws(SEEDS * (1 + seed as usize), 3, 1);
+    let lies = place.lies(&bed_model.jobs(&[0], &draws, hidden)?)?;
+    Ok(stated(&lies, bed_model.set.bed, seed))
 }
 
 /// What one would say of `bed` who looks at beds that lie so, with errors of his own.

@@ -1,4 +1,4 @@
-//! What a bed of grains may lack, as a switch of the simulation with one amplitude.
+//! What a bed of grains may lack, as a candidate of the simulation with one amplitude.
 
 use std::f64::consts::FRAC_PI_6;
 
@@ -11,7 +11,7 @@ use super::variation::Variation;
 
 /// A candidate of the simulation.
 #[derive(Clone, Copy)]
-pub struct Switch {
+pub struct BedCandidate {
     /// kebab-case.
     pub id: &'static str,
     /// What it is part of.
@@ -22,7 +22,7 @@ pub struct Switch {
     pub screen: f64,
     /// Least and greatest amplitude.
     pub range: (f64, f64),
-    /// What it takes to tell it from its twins.
+    /// What it takes to tell it from its confounders.
     pub separable_from: &'static str,
     /// Whether measurements may have it; what only another simulation can have is a candidate where it is named.
     pub of_measurements: bool,
@@ -32,7 +32,7 @@ pub struct Switch {
     pub(super) act: Act,
 }
 
-/// What a switch does to a model.
+/// What a candidate does to a model.
 #[derive(Clone, Copy)]
 pub(super) enum Act {
     /// It adds the effect of its name.
@@ -46,8 +46,8 @@ pub(super) enum Act {
     },
 }
 
-impl Switch {
-    /// The switch that adds the effect called `id`.
+impl BedCandidate {
+    /// The candidate that adds the effect called `id`.
     pub(super) const fn of_effect(id: &'static str, candidate: Candidate) -> Self {
         Self {
             id,

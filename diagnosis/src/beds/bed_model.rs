@@ -30,7 +30,7 @@ const EXPECTED: f64 = 0.5;
 
 /// Why a model of grains cannot stand before a set.
 #[derive(Debug, Error)]
-pub enum StandError {
+pub enum BedModelError {
     /// It is of the other kind.
     #[error("`{model}` has no bed of grains")]
     NoGrains {
@@ -114,7 +114,7 @@ pub struct Draw {
 }
 
 /// A model of grains before a set.
-pub struct Stand<'a> {
+pub struct BedModel<'a> {
     /// The model.
     pub model: &'a Model,
     medium: &'a GrainMedium,
@@ -128,23 +128,23 @@ pub struct Stand<'a> {
     depths: Vec<Option<f64>>,
 }
 
-impl<'a> Stand<'a> {
+impl<'a> BedModel<'a> {
     /// `model` before `set`. The set says what was dropped and how, and the strength of gravity.
     ///
     /// # Errors
     /// If the model is no bed of grains of the geometry of the set.
-    pub fn new(model: &'a Model, set: &'a MeasurementSet) -> Result<Self, StandError> {
+    pub fn new(model: &'a Model, set: &'a MeasurementSet) -> Result<Self, BedModelError> {
         let Medium::Grains(medium) = &model.medium else {
-            return Err(StandError::NoGrains { model: model.run.name.clone() });
+            return Err(BedModelError::NoGrains { model: model.run.name.clone() });
         };
         if set.beds.len() > 1 {
             let (model, beds) = (model.run.name.clone(), set.beds.len());
-            return Err(StandError::SeveralBeds { model, beds });
+            return Err(BedModelError::SeveralBeds { model, beds });
         }
         let (set_holds, wanted) = match set.kind.curve() {
             Some(curve) if curve.along == Along::Time => {
                 let (model, what) = (model.run.name.clone(), curve.plural);
-                return Err(StandError::OverTime { model, what });
+                return Err(BedModelError::OverTime { model, what });
             }
             Some(_) => ("pushes", "intrusion"),
             None => ("impacts", "impact"),
@@ -152,7 +152,7 @@ impl<'a> Stand<'a> {
         let table = model.impact.table();
         if table != wanted {
             let model = model.run.name.clone();
-            return Err(StandError::Start { model, set_holds, table, wanted });
+            return Err(BedModelError::Start { model, set_holds, table, wanted });
         }
         let of_set = match set.bed.geometry {
             Geometry::Planar => Space::Planar,
@@ -162,12 +162,12 @@ impl<'a> Stand<'a> {
             let model = model.run.name.clone();
             let name = |space: Space| if space == Space::Planar { "2d" } else { "3d" };
             let (model_space, set_space) = (name(medium.space), name(of_set));
-            return Err(StandError::Geometry { model, model_space, set_space });
+            return Err(BedModelError::Geometry { model, model_space, set_space });
         }
         let widest = set.conditions.iter().map(|one| one.diameter).fold(0.0, f64::max);
         let x_range = medium.start.x_range;
         let n_places = ((x_range.1 - x_range.0) / (APART * widest)).floor() as usize;
-        let mut stand = Self {
+        let mut bed_model = Self {
             model,
             medium,
             set,
@@ -176,16 +176,16 @@ impl<'a> Stand<'a> {
             expected: Vec::new(),
             depths: (0..set.conditions.len()).map(|at| depth_of_push(set, at)).collect(),
         };
-        stand.expected = (0..set.conditions.len()).map(|at| stand.expected(at)).collect();
+        bed_model.expected = (0..set.conditions.len()).map(|at| bed_model.expected(at)).collect();
         let duration = model.run.duration;
-        let pushes = stand.depths.iter().zip(&stand.expected).zip(&set.conditions);
+        let pushes = bed_model.depths.iter().zip(&bed_model.expected).zip(&set.conditions);
         for ((depth, &wanted), condition) in pushes {
             if let Some(depth) = depth.filter(|_| wanted > duration) {
                 let (condition, model) = (condition.id.clone(), model.run.name.clone());
-                return Err(StandError::Short { condition, depth, wanted, model, duration });
+                return Err(BedModelError::Short { condition, depth, wanted, model, duration });
             }
         }
-        Ok(stand)
+        Ok(bed_model)
     }
 
     /// The speed of the body under `condition` (m/s); of a push, the one of the model where that is faster. Grains forget
@@ -256,7 +256,7 @@ impl<'a> Stand<'a> {
         condition: usize,
         draw: Draw,
         variation: &Variation,
-    ) -> Result<Job, StandError> {
+    ) -> Result<Job, BedModelError> {
         let mut before = vec![Change::Seed(draw.seed), Change::Gravity(self.set.bed.gravity)];
         before.extend(variation.before.iter().cloned());
         let mut during = before.clone();
@@ -267,10 +267,10 @@ impl<'a> Stand<'a> {
         during.extend(self.depths[condition].map(Change::PushedTo));
         during.push(Change::X(self.x(draw)));
         let with = |changes: &[Change]| {
-            self.grains()
-                .with(changes)
-                .map(Arc::new)
-                .map_err(|source| StandError::Config { condition: of_condition.id.clone(), source })
+            self.grains().with(changes).map(Arc::new).map_err(|source| BedModelError::Config {
+                condition: of_condition.id.clone(),
+                source,
+            })
         };
         let of_set = |run: &Run| run.condition == condition && run.crater != Crater::default();
         Ok(Job {
@@ -291,18 +291,18 @@ impl<'a> Stand<'a> {
         conditions: &[usize],
         draws: &[Vec<Draw>],
         variation: &Variation,
-    ) -> Result<Vec<Job>, StandError> {
+    ) -> Result<Vec<Job>, BedModelError> {
         let each = conditions.iter().zip(draws);
         let all = each.flat_map(|(&at, draws)| draws.iter().map(move |&draw| (at, draw)));
         all.map(|(at, draw)| self.job(at, draw, variation)).collect()
     }
 
     /// The model with `changes`.
-    pub(super) fn prepared(&self, changes: &[Change]) -> Result<Model, StandError> {
+    pub(super) fn prepared(&self, changes: &[Change]) -> Result<Model, BedModelError> {
         let condition =
             || self.set.conditions.first().map_or_else(String::new, |one| one.id.clone());
         let with = self.grains().with(changes);
-        with.map_err(|source| StandError::Config { condition: condition(), source })
+        with.map_err(|source| BedModelError::Config { condition: condition(), source })
     }
 
     /// The model with `variation`, complete and in SI.
@@ -385,8 +385,8 @@ mod tests {
         let fluid = Fluid { density: 998.0, viscosity: 1e-3 };
         let draw = Draw { seed: 1, place: 0 };
         let fluids = |set: &MeasurementSet| {
-            let stand = Stand::new(&model, set).unwrap();
-            let job = stand.job(0, draw, &Variation::default()).unwrap();
+            let bed_model = BedModel::new(&model, set).unwrap();
+            let job = bed_model.job(0, draw, &Variation::default()).unwrap();
             [&job.model, &job.bed].map(|model| {
                 let Medium::Grains(medium) = &model.medium else { panic!("no grains") };
                 medium.grain_forces.iter().filter(|force| force.is_of_a_fluid()).count()
@@ -406,9 +406,9 @@ mod tests {
         let named = |name: &str| NamedBed { name: name.to_owned(), bed: set.bed };
         let [one, other] = ["loose", "dense"].map(named);
         set.beds = vec![one];
-        assert!(Stand::new(&model, &set).is_ok());
+        assert!(BedModel::new(&model, &set).is_ok());
         set.beds.push(other);
-        let refused = Stand::new(&model, &set).err();
-        assert!(matches!(refused, Some(StandError::SeveralBeds { beds: 2, .. })), "{refused:?}");
+        let refused = BedModel::new(&model, &set).err();
+        assert!(matches!(refused, Some(BedModelError::SeveralBeds { beds: 2, .. })), "{refused:?}");
     }
 }

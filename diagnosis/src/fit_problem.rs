@@ -1,4 +1,4 @@
-//! A model on the bench: fitted to measurements, under the noise that its own trajectories give.
+//! Measurements and a model: fitted to measurements, under the noise that its own trajectories give.
 
 use measurements::MeasurementSet;
 use nalgebra::DMatrix;
@@ -39,7 +39,7 @@ pub const DEFAULT_SEED: u64 = 1;
 
 /// Measurements and the model that they are compared with.
 #[derive(Clone, Copy)]
-pub struct Bench<'a> {
+pub struct FitProblem<'a> {
     /// The set.
     pub set: &'a MeasurementSet,
     /// Its observables.
@@ -79,7 +79,7 @@ impl Fitted {
 
 /// Why measurements cannot be compared with a model.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum BenchError {
+pub enum FitError {
     /// The model fails.
     #[error(transparent)]
     Predict(#[from] PredictError),
@@ -120,18 +120,18 @@ pub enum BenchError {
     },
 }
 
-impl Bench<'_> {
+impl FitProblem<'_> {
     /// Fits the model with the effects of `start`, noise and fit in turn.
     ///
     /// # Errors
     /// If there is too little to fit to, or the model fails.
-    pub fn fit(&self, start: &Point) -> Result<Fitted, BenchError> {
+    pub fn fit(&self, start: &Point) -> Result<Fitted, FitError> {
         let measured =
             self.observed.fit.iter().map(|&c| self.observed.conditions[c].layout.len()).sum();
         let without_prior = self.forward.parameters().iter().filter(|one| one.prior.is_none());
         let free = without_prior.count() + start.effects.len();
         if measured <= free {
-            return Err(BenchError::TooFew { measured, free });
+            return Err(FitError::TooFew { measured, free });
         }
         self.fit_from(start, &self.first_noise()?)
     }
@@ -140,12 +140,12 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// If the model fails.
-    pub fn fit_from(&self, start: &Point, noise: &Noise) -> Result<Fitted, BenchError> {
+    pub fn fit_from(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
         let mut fitted = self.fit_once(start, noise)?;
         for _ in 1..ROUNDS {
             fitted = match self.fit_once(&fitted.fit.point, &fitted.noise) {
                 // The scatter has no derivatives around this fit: the weights stay those of where it began.
-                Err(BenchError::Predict(_)) => break,
+                Err(FitError::Predict(_)) => break,
                 other => other?,
             };
         }
@@ -156,9 +156,9 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// If the model fails.
-    pub fn fit_once(&self, start: &Point, noise: &Noise) -> Result<Fitted, BenchError> {
+    pub fn fit_once(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
         let (sensitivities, mut noise) = self.scatter(start, noise)?;
-        let weigh = |noise: &Noise| -> Result<Vec<Weight>, BenchError> {
+        let weigh = |noise: &Noise| -> Result<Vec<Weight>, FitError> {
             let each = self.observed.fit.iter().zip(&sensitivities);
             each.map(|(&c, sensitivity)| self.weight(start, c, sensitivity, noise)).collect()
         };
@@ -203,7 +203,7 @@ impl Bench<'_> {
         &self,
         sd: f64,
         fitted: &Fitted,
-    ) -> Result<Fitted, BenchError> {
+    ) -> Result<Fitted, FitError> {
         let sessions = Between { sd, ..fitted.noise.sessions };
         self.under(Noise { sessions, ..fitted.noise }, fitted)
     }
@@ -216,14 +216,14 @@ impl Bench<'_> {
         &self,
         sd: f64,
         fitted: &Fitted,
-    ) -> Result<Option<Fitted>, BenchError> {
+    ) -> Result<Option<Fitted>, FitError> {
         let angles = Between { sd, ..fitted.noise.angles };
         let within = || self.under(Noise { angles, ..fitted.noise }, fitted);
         (fitted.noise.angles.sd > sd).then(within).transpose()
     }
 
     /// `fitted` again under `noise`.
-    fn under(&self, noise: Noise, fitted: &Fitted) -> Result<Fitted, BenchError> {
+    fn under(&self, noise: Noise, fitted: &Fitted) -> Result<Fitted, FitError> {
         let weights = self.weights(&fitted.fit.point, &noise, &self.observed.fit)?;
         let fit = self.data(&weights).fit(&fitted.fit.point)?;
         Ok(Fitted { fit, weights, noise })
@@ -261,7 +261,7 @@ impl Bench<'_> {
     pub(crate) fn with_sessions_of_their_own(
         &self,
         fitted: &Fitted,
-    ) -> Result<Option<Fitted>, BenchError> {
+    ) -> Result<Option<Fitted>, FitError> {
         match (self.between_sigma(&fitted.noise), self.session_sigma(&fitted.noise)) {
             (None, Some(sigma)) => self.with_scatter_between_conditions(sigma, fitted).map(Some),
             _ => Ok(None),
@@ -279,13 +279,13 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// If the model fails, or predicts something else than was measured.
-    pub fn sensitivity(&self, point: &Point, condition: usize) -> Result<Sensitivity, BenchError> {
+    pub fn sensitivity(&self, point: &Point, condition: usize) -> Result<Sensitivity, FitError> {
         let observed = &self.observed.conditions[condition];
         let sensitivity = Sensitivity::at(point, self.forward, condition, observed.reach)?;
         let (found, expected) = (sensitivity.mean.len(), observed.layout.len());
         match found == expected {
             true => Ok(sensitivity),
-            false => Err(BenchError::Layout { id: observed.id.clone(), found, expected }),
+            false => Err(FitError::Layout { id: observed.id.clone(), found, expected }),
         }
     }
 
@@ -298,7 +298,7 @@ impl Bench<'_> {
         point: &Point,
         noise: &Noise,
         conditions: &[usize],
-    ) -> Result<Vec<Weight>, BenchError> {
+    ) -> Result<Vec<Weight>, FitError> {
         let weight = |&condition: &usize| {
             let sensitivity = self.sensitivity(point, condition)?;
             self.weight(point, condition, &sensitivity, noise)
@@ -312,12 +312,12 @@ impl Bench<'_> {
         condition: usize,
         sensitivity: &Sensitivity,
         noise: &Noise,
-    ) -> Result<Weight, BenchError> {
+    ) -> Result<Weight, FitError> {
         let observed = &self.observed.conditions[condition];
         let own = self.own_covariance(condition, &point.effects, noise);
         let own = with_stop_error(own, observed, self.forward.stop_error(condition));
         Weight::new(observed, sensitivity, noise, own)
-            .ok_or_else(|| BenchError::Singular { id: observed.id.clone() })
+            .ok_or_else(|| FitError::Singular { id: observed.id.clone() })
     }
 
     /// Covariance of what the model predicts with `effects`: of the means of its runs, and of what conditions differ by
@@ -336,11 +336,7 @@ impl Bench<'_> {
     }
 
     /// The sensitivities of the conditions to fit along the paths at `point`, and the noise that repeats show with them.
-    fn scatter(
-        &self,
-        point: &Point,
-        noise: &Noise,
-    ) -> Result<(Vec<Sensitivity>, Noise), BenchError> {
+    fn scatter(&self, point: &Point, noise: &Noise) -> Result<(Vec<Sensitivity>, Noise), FitError> {
         let fit = &self.observed.fit;
         let sensitivities = fit.par_iter().map(|&c| self.sensitivity(point, c)).collect::<Vec<_>>();
         let sensitivities = sensitivities.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -348,7 +344,7 @@ impl Bench<'_> {
         Ok((sensitivities, noise))
     }
 
-    fn first_noise(&self) -> Result<Noise, BenchError> {
+    fn first_noise(&self) -> Result<Noise, FitError> {
         if self.observed.has_repeats() {
             Ok(Noise::guess(&self.set.instrument))
         } else if self.observed.has_stated_errors() {
@@ -356,7 +352,7 @@ impl Bench<'_> {
         } else if self.set.kind.has_readings() && self.set.states_errors() {
             Ok(Noise::assumed_scatter(&self.set.instrument))
         } else {
-            Err(BenchError::NoErrors)
+            Err(FitError::NoErrors)
         }
     }
 }

@@ -8,16 +8,16 @@ use crate::neighbours::Neighbourhood;
 use crate::surface::SurfacePoint;
 
 /// The buffers of all threads. What is in them is of no use to the next who takes them.
-pub(super) struct Benches(Vec<Mutex<Bench>>);
+pub(super) struct BuffersOfThreads(Vec<Mutex<ThreadBuffers>>);
 
-impl Benches {
+impl BuffersOfThreads {
     /// For the threads of the current pool; those of a larger one would wait for each other.
     pub(super) fn new() -> Self {
         Self((0..rayon::current_num_threads()).map(|_| Mutex::default()).collect())
     }
 
     /// Those of this thread.
-    pub(super) fn own(&self) -> MutexGuard<'_, Bench> {
+    pub(super) fn own(&self) -> MutexGuard<'_, ThreadBuffers> {
         let thread = rayon::current_thread_index().unwrap_or(0) % self.0.len();
         self.0[thread].lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -25,7 +25,7 @@ impl Benches {
 
 /// The buffers of one thread.
 #[derive(Default)]
-pub(super) struct Bench {
+pub(super) struct ThreadBuffers {
     pub(super) points: Vec<Vec3>,
     pub(super) points_half: Vec<Vec3>,
     pub(super) nearest: Vec<SurfacePoint>,

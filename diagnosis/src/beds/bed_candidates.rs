@@ -5,15 +5,15 @@ use std::sync::LazyLock;
 use contact_laws::{Candidacy, GRAIN_FORCES, LAWS};
 use resistive::{RESISTANCE_LAWS, Role};
 
+use super::bed_candidate::BedCandidate;
 use super::changes::CHANGES;
-use super::switch::Switch;
 
-/// The switches of the simulation, in the order of the docs.
-pub static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
+/// The candidates of the simulation, in the order of the docs.
+pub static BED_CANDIDATES: LazyLock<Vec<BedCandidate>> = LazyLock::new(|| {
     let laws = LAWS.iter().map(|law| (law.name, law.candidacy));
     let forces = GRAIN_FORCES.iter().map(|force| (force.name, force.candidacy));
     let effects = laws.chain(forces).filter_map(|(name, candidacy)| match candidacy {
-        Candidacy::Candidate(candidate) => Some(Switch::of_effect(name, candidate)),
+        Candidacy::Candidate(candidate) => Some(BedCandidate::of_effect(name, candidate)),
         Candidacy::None(_) => None,
     });
     effects.chain(CHANGES.iter().copied()).collect()
@@ -29,8 +29,9 @@ pub(super) static OF_THE_APPARATUS: LazyLock<Vec<&'static str>> = LazyLock::new(
 
 /// Whether the candidates `one` and `other` differ before first contact alone.
 pub(super) fn are_alike_below(one: &str, other: &str) -> bool {
-    let says =
-        |id: &str, of: &str| SWITCHES.iter().any(|own| own.id == id && own.is_alike_below(of));
+    let says = |id: &str, of: &str| {
+        BED_CANDIDATES.iter().any(|own| own.id == id && own.is_alike_below(of))
+    };
     says(one, other) || says(other, one)
 }
 
@@ -56,7 +57,8 @@ mod tests {
     }
 
     fn is_candidate(name: &str) -> bool {
-        SWITCHES.iter().any(|switch| switch.id == name) || OF_THE_APPARATUS.contains(&name)
+        BED_CANDIDATES.iter().any(|bed_candidate| bed_candidate.id == name)
+            || OF_THE_APPARATUS.contains(&name)
     }
 
     #[test]
@@ -79,10 +81,17 @@ mod tests {
 
     #[test]
     fn candidates_that_look_alike_are_candidates_and_each_pair_says_so_once() {
-        for switch in SWITCHES.iter() {
-            assert!(!are_alike_below(switch.id, switch.id));
-            for other in SWITCHES.iter().filter(|other| switch.is_alike_below(other.id)) {
-                assert!(!other.is_alike_below(switch.id), "{} and {}", switch.id, other.id);
+        for bed_candidate in BED_CANDIDATES.iter() {
+            assert!(!are_alike_below(bed_candidate.id, bed_candidate.id));
+            for other in
+                BED_CANDIDATES.iter().filter(|other| bed_candidate.is_alike_below(other.id))
+            {
+                assert!(
+                    !other.is_alike_below(bed_candidate.id),
+                    "{} and {}",
+                    bed_candidate.id,
+                    other.id
+                );
             }
         }
         for (one, other) in
@@ -97,10 +106,14 @@ mod tests {
     #[test]
     fn the_screened_amplitude_is_searched_and_every_candidate_stands_in_the_docs() {
         let docs = include_str!("../../../docs/grain-diagnosis.md");
-        for switch in SWITCHES.iter() {
-            let (least, most) = switch.range;
-            assert!(least <= 0.0 && 0.0 < switch.screen && switch.screen <= most, "{}", switch.id);
-            assert!(docs.contains(&format!("`{}`", switch.id)), "{}", switch.id);
+        for bed_candidate in BED_CANDIDATES.iter() {
+            let (least, most) = bed_candidate.range;
+            assert!(
+                least <= 0.0 && 0.0 < bed_candidate.screen && bed_candidate.screen <= most,
+                "{}",
+                bed_candidate.id
+            );
+            assert!(docs.contains(&format!("`{}`", bed_candidate.id)), "{}", bed_candidate.id);
         }
         for id in OF_THE_APPARATUS.iter() {
             assert!(docs.contains(&format!("`{id}`")), "{id}");

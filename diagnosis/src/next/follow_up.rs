@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 use super::hypothesis::{Expectation, Hypothesis};
 use super::prospect::{Prospect, entropy, posterior};
 use super::{hypotheses, probabilities};
-use crate::bench::Bench;
+use crate::fit_problem::FitProblem;
 use crate::forward::{Forward, PredictError};
 use crate::lack_of_fit::at_least;
 use crate::observable::{Layout, Observable};
@@ -19,7 +19,7 @@ const UNEXPECTED: f64 = 0.01;
 
 /// Runs that came after a diagnosis, held against what it expected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sequel {
+pub struct FollowUp {
     /// Every hypothesis of the earlier diagnosis, its leader first.
     pub hypotheses: Vec<Share>,
     /// What the new runs told about which of them holds (bits); negative where they raise doubts.
@@ -32,7 +32,7 @@ pub struct Sequel {
     /// Whether that is below 0.01.
     pub is_unexpected: bool,
     /// Every condition with new runs.
-    pub came: Vec<Came>,
+    pub came: Vec<NewRuns>,
 }
 
 /// A hypothesis before and after the new runs.
@@ -53,7 +53,7 @@ pub struct Share {
 
 /// A condition with new runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Came {
+pub struct NewRuns {
     /// Its id.
     pub condition: String,
     /// How many new runs it has.
@@ -92,11 +92,11 @@ pub struct Expected {
 ///
 /// # Errors
 /// If the model fails as it is.
-pub fn sequel(
-    earlier: &Bench<'_>,
+pub fn follow_up(
+    earlier: &FitProblem<'_>,
     diagnosis: &Diagnosis,
     (later, forward): (&Observed, &dyn Forward),
-) -> Result<Option<Sequel>, PredictError> {
+) -> Result<Option<FollowUp>, PredictError> {
     let Some(proposed) = &diagnosis.proposed else { return Ok(None) };
     let mut hypotheses = match diagnosis.p1 {
         Some(_) if diagnosis.is_something_missing() => hypotheses(earlier, diagnosis),
@@ -135,7 +135,7 @@ pub fn sequel(
             let (value, se) = number(prospect, one, place);
             Expected { id: hypothesis.name().to_owned(), value, se }
         });
-        Came {
+        NewRuns {
             condition: observed.id.clone(),
             runs: observed.runs.len(),
             quantity,
@@ -144,15 +144,15 @@ pub fn sequel(
             expected: expected.collect(),
         }
     });
-    let came: Vec<Came> = came.collect();
+    let came: Vec<NewRuns> = came.collect();
     let nearest = (0..after.len()).max_by(|&a, &b| after[a].total_cmp(&after[b]));
-    let miss = |one: &Came, at: usize| {
+    let miss = |one: &NewRuns, at: usize| {
         let Expected { value, se, .. } = one.expected[at];
         ((one.measured - value) / se).powi(2)
     };
     let misses = |at: usize| came.iter().map(|one| miss(one, at)).sum::<f64>();
     let p_nearest = nearest.and_then(|at| at_least(misses(at), came.len() as f64)).unwrap_or(1.0);
-    Ok(Some(Sequel {
+    Ok(Some(FollowUp {
         hypotheses: shares.collect(),
         told_bits: entropy(&before) - entropy(&after),
         p_nearest,
