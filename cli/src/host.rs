@@ -48,7 +48,7 @@ impl Host {
 
     /// Whether it has been asked to.
     #[must_use]
-    pub fn is_stopped(&self) -> bool {
+    pub(crate) fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
     }
 

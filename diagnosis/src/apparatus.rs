@@ -16,19 +16,19 @@ pub mod defaults {
     /// Zero of depth (m), unless its share of a grain diameter or the stated scatter of the level is larger.
     pub const ZERO: f64 = 1e-3;
     /// Zero of depth in grain diameters, if depths count from the first contact: any of the highest grains can be met first.
-    pub const FIRST_GRAIN: f64 = 0.5;
+    pub(crate) const FIRST_GRAIN: f64 = 0.5;
     /// Zero of depth in grain diameters, if depths count from the mean height of the surface.
-    pub const MEAN_OF_GRAINS: f64 = 0.25;
+    pub(crate) const MEAN_OF_GRAINS: f64 = 0.25;
     /// Impact speeds, relative.
     pub const SPEED: f64 = 0.02;
     /// Angles of oblique impacts (deg).
-    pub const ANGLE_DEG: f64 = 0.5;
+    pub(crate) const ANGLE_DEG: f64 = 0.5;
     /// Scale of lengths, relative.
     pub const SCALE: f64 = 0.01;
     /// Mass of each body, relative.
     pub const MASS: f64 = 0.02;
     /// Direction of gravity in the plane of motion (deg).
-    pub const TILT_DEG: f64 = 1.0;
+    pub(crate) const TILT_DEG: f64 = 1.0;
     /// Resistance of one session against the others, relative.
     pub const SESSION: f64 = 0.05;
     /// Resistance of one of several beds against the first, relative, beside what its density and gravity do.

@@ -53,7 +53,7 @@ impl Grid {
     }
 
     /// The nodes of the force normal to the motion around `place` with their shares; none where there is no such force.
-    pub fn sideways_shares_at(&self, place: [f64; 4]) -> impl Iterator<Item = (usize, f64)> {
+    pub(crate) fn sideways_shares_at(&self, place: [f64; 4]) -> impl Iterator<Item = (usize, f64)> {
         let behind = self.against();
         let all = self.is_sideways.then(|| self.shares_at(place));
         all.into_iter().flatten().map(move |(node, share)| (node + behind, share))
@@ -61,7 +61,7 @@ impl Grid {
 
     /// The nodes around `place` with their shares: a field there is the sum of its values times these.
     #[must_use]
-    pub fn shares_at(&self, place: [f64; 4]) -> [(usize, f64); 16] {
+    pub(crate) fn shares_at(&self, place: [f64; 4]) -> [(usize, f64); 16] {
         let ends: [[(usize, f64); 2]; 4] =
             std::array::from_fn(|axis| shares(&self.axes[axis], place[axis]));
         std::array::from_fn(|corner| {
@@ -118,7 +118,7 @@ impl Field {
 
     /// The force normal to the motion there, in the plane of motion, out of the bed where the body sinks; in the same units.
     #[must_use]
-    pub fn sideways_at(&self, place: [f64; 4]) -> f64 {
+    pub(crate) fn sideways_at(&self, place: [f64; 4]) -> f64 {
         self.grid.sideways_shares_at(place).map(|(node, share)| share * self.values[node]).sum()
     }
 }

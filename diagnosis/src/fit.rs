@@ -114,7 +114,7 @@ impl Fit {
 
     /// Covariance of the unknowns that are not held at a bound.
     #[must_use]
-    pub fn free_covariance(&self) -> DMatrix<f64> {
+    pub(crate) fn free_covariance(&self) -> DMatrix<f64> {
         self.covariance.select_rows(&self.free).select_columns(&self.free)
     }
 
@@ -344,7 +344,7 @@ impl Data<'_> {
     ///
     /// # Errors
     /// If the model cannot be integrated there.
-    pub fn jacobian(&self, fit: &Fit) -> Result<DMatrix<f64>, PredictError> {
+    pub(crate) fn jacobian(&self, fit: &Fit) -> Result<DMatrix<f64>, PredictError> {
         self.derivative(&fit.point, &self.scales(&fit.point), &fit.free)
     }
 

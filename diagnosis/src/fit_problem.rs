@@ -62,7 +62,7 @@ pub struct Fitted {
 impl Fitted {
     /// Twice the negative logarithm of the likelihood, with what priors and the scatter between conditions cost.
     #[must_use]
-    pub fn deviance(&self) -> f64 {
+    pub(crate) fn deviance(&self) -> f64 {
         self.fit.chi2 + self.cost_of_noise()
     }
 
@@ -140,7 +140,7 @@ impl FitProblem<'_> {
     ///
     /// # Errors
     /// If the model fails.
-    pub fn fit_from(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
+    pub(crate) fn fit_from(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
         let mut fitted = self.fit_once(start, noise)?;
         for _ in 1..ROUNDS {
             fitted = match self.fit_once(&fitted.fit.point, &fitted.noise) {
@@ -156,7 +156,7 @@ impl FitProblem<'_> {
     ///
     /// # Errors
     /// If the model fails.
-    pub fn fit_once(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
+    pub(crate) fn fit_once(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
         let (sensitivities, mut noise) = self.scatter(start, noise)?;
         let weigh = |noise: &Noise| -> Result<Vec<Weight>, FitError> {
             let each = self.observed.fit.iter().zip(&sensitivities);

@@ -284,7 +284,7 @@ impl Bound {
 impl Candidate {
     /// The end of its range at which amplitude `q` is held, if it is.
     #[must_use]
-    pub fn bound_at(&self, q: f64) -> Option<Bound> {
+    pub(crate) fn bound_at(&self, q: f64) -> Option<Bound> {
         Bound::at(q, self.min, self.max)
     }
 
@@ -306,7 +306,7 @@ impl Candidate {
     /// Whether amplitude `q` is outside of what one would expect, by more than two of its standard errors `se`; none
     /// count where none is known, as at a bound.
     #[must_use]
-    pub fn is_unusual(&self, q: f64, se: Option<f64>) -> bool {
+    pub(crate) fn is_unusual(&self, q: f64, se: Option<f64>) -> bool {
         let margin = OUTSIDE * se.unwrap_or(0.0);
         self.usual.is_some_and(|[least, greatest]| q + margin < least || q - margin > greatest)
     }
@@ -385,7 +385,7 @@ pub struct Bend(pub [f64; Self::TERMS]);
 
 impl Bend {
     /// How many polynomials there are.
-    pub const TERMS: usize = 5;
+    pub(crate) const TERMS: usize = 5;
 
     /// The factor at these shares of depth and of speed, from 0 to 1; beyond, that of the end.
     #[must_use]

@@ -100,10 +100,10 @@ const REFUTED: f64 = 3.0;
 pub const CLEAR: f64 = 1.5;
 
 /// Largest share of the error on held-out conditions that may remain with the effect.
-pub const NEARER: f64 = 0.75;
+pub(crate) const NEARER: f64 = 0.75;
 
 /// Largest error on held-out conditions, over the noise of their means, that counts as noise.
-pub const WITHIN: f64 = 1.3;
+pub(crate) const WITHIN: f64 = 1.3;
 
 /// An effect that leaves at most this share of a clear error is named though something is left over. In benchmark sets,
 /// effects of another form than their formula leave 0.14 to 0.43, and effects that are not there 0.36 or more.
@@ -238,13 +238,13 @@ impl HeldOut {
 
     /// Whether the model without it misses by more than [`CLEAR`] times the noise; `None` where that is not known.
     #[must_use]
-    pub fn is_above_noise(&self) -> Option<bool> {
+    pub(crate) fn is_above_noise(&self) -> Option<bool> {
         Some(self.before? >= CLEAR * self.noise_floor?)
     }
 
     /// Whether it is missed by that much with what is proposed, too; `None` where that is not known.
     #[must_use]
-    pub fn leaves_more_than_noise(&self) -> Option<bool> {
+    pub(crate) fn leaves_more_than_noise(&self) -> Option<bool> {
         Some(self.after? >= CLEAR * self.noise_floor?)
     }
 
@@ -257,7 +257,7 @@ impl HeldOut {
     /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too, or reduces
     /// a large error to the noise; `None` where no error is known.
     #[must_use]
-    pub fn is_nearer(&self) -> Option<bool> {
+    pub(crate) fn is_nearer(&self) -> Option<bool> {
         let ratio = self.after? / self.before?;
         let in_most = self.ratio_at_most.is_none_or(|most| most <= NEARER);
         Some(ratio <= NEARER && (in_most || self.leaves_only_noise()))
@@ -334,7 +334,7 @@ impl HeldOut {
 
     /// Whether what is proposed leaves nothing of the error but noise, and takes half of it away at least.
     #[must_use]
-    pub fn is_within_noise(&self) -> bool {
+    pub(crate) fn is_within_noise(&self) -> bool {
         let errors = self.before.zip(self.after).zip(self.noise_floor);
         errors.is_some_and(|((before, after), floor)| {
             after <= WITHIN * floor && after <= 0.5 * before && self.is_nearer() == Some(true)
@@ -344,7 +344,7 @@ impl HeldOut {
     /// Whether what is proposed takes two thirds of a clear error away at least, half of it in most choices of the
     /// conditions, and predicts better than without it.
     #[must_use]
-    pub fn takes_most(&self) -> bool {
+    pub(crate) fn takes_most(&self) -> bool {
         let most =
             self.before.zip(self.after).is_some_and(|(before, after)| after <= MOST * before);
         most && self.ratio_at_most.is_some_and(|ratio| ratio <= 0.5)
@@ -355,7 +355,7 @@ impl HeldOut {
     /// Whether it predicts that worse, by more than chance excuses: means of few runs under few
     /// conditions have errors that hang together, so the density alone refutes some true effects.
     #[must_use]
-    pub fn refutes(&self) -> bool {
+    pub(crate) fn refutes(&self) -> bool {
         self.log_density_gain < -REFUTED && self.is_no_nearer()
     }
 
@@ -391,4 +391,38 @@ fn ratio_at_most(observed: &Observed, all: &[&Pair], unit: Unit) -> Option<f64> 
         .collect();
     ratios.sort_by(f64::total_cmp);
     Some(ratios[(CHOICES * 9).div_ceil(10) - 1]).filter(|ratio| ratio.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn held_out(judged: usize, by: Option<Fails>, gain: f64) -> HeldOut {
+        let error = (judged > 0).then_some(1e-3);
+        let one = |by| NotPredicted { condition: "a".into(), by, why: "it never stops".into() };
+        HeldOut {
+            before: error,
+            after: error,
+            noise_floor: error,
+            explained: None,
+            unit: Unit::Position,
+            conditions: LeftOut::Holdout,
+            conditions_judged: judged,
+            not_predicted: by.map(one).into_iter().collect(),
+            ratio_at_most: None,
+            log_density_gain: gain,
+        }
+    }
+
+    #[test]
+    fn what_an_effect_cannot_predict_is_no_gain_of_it() {
+        let doubt = |judged, by, gain| held_out(judged, by, gain).doubt();
+        assert_eq!(doubt(2, None, 4.0), None);
+        assert_eq!(doubt(2, Some(Fails::Before), 4.0), None);
+        let after = doubt(2, Some(Fails::After), 4.0);
+        assert_eq!(after, Some(StrengthReason::ConditionsNotPredicted));
+        assert_eq!(doubt(0, Some(Fails::Both), 0.0), Some(StrengthReason::HeldOutNotJudged));
+        assert_eq!(doubt(2, None, 0.0), Some(StrengthReason::HeldOutNoBetter));
+        assert!(!held_out(0, None, -9.0).refutes(), "no error is larger than none");
+    }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use measurements::MeasurementSet;
 
-use crate::added_force::added_forces;
+use crate::added_force::{AddedForce, added_forces};
 use crate::doubts::{doubts, evidence, no_repeats};
 use crate::fit::Fit;
 use crate::fit_problem::{FitError, FitProblem, Fitted, MOST_BETWEEN};
@@ -353,22 +353,7 @@ impl Judge<'_> {
         let unexplained = unexplained(problem, verdict, left_by, (hint, self.seed))?;
         let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
         let listed = as_listed(problem, proposed)?;
-        let amplitudes: Vec<Amplitude> = listed
-            .point
-            .effects
-            .iter()
-            .enumerate()
-            .zip(added_forces(problem, &listed))
-            .map(|((at, &(index, q)), force)| {
-                let se = listed.standard_error(listed.point.parameters.len() + at);
-                let candidate = &problem.forward.candidates()[index];
-                let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
-                let interval_95 = candidate.interval_95(q, se);
-                let form = candidate.form.iter().copied().collect();
-                let id = self.name(index);
-                Amplitude { id, form, q, se, at_bound, interval_95, unusual, force }
-            })
-            .collect();
+        let amplitudes = amplitudes(problem, &listed);
         let held_out = match held_out {
             Some(known) => known,
             None => HeldOut::of(problem, before, proposed)?,
@@ -451,6 +436,27 @@ pub(crate) fn nothing(problem: &FitProblem<'_>, fitted: &Fitted) -> Verdict {
     } else {
         Verdict::NothingDetected
     }
+}
+
+/// The amplitudes of the effects of `fit`, with the forces that they are.
+fn amplitudes(problem: &FitProblem<'_>, fit: &Fit) -> Vec<Amplitude> {
+    let forces = added_forces(problem, fit);
+    let effects = fit.point.effects.iter().enumerate().zip(forces);
+    let one = |((at, &(index, q)), force): ((usize, &(usize, f64)), Option<AddedForce>)| {
+        let se = fit.standard_error(fit.point.parameters.len() + at);
+        let candidate = &problem.forward.candidates()[index];
+        Amplitude {
+            id: candidate.id.clone(),
+            form: candidate.form.iter().copied().collect(),
+            q,
+            se,
+            at_bound: candidate.bound_at(q),
+            interval_95: candidate.interval_95(q, se),
+            unusual: candidate.is_unusual(q, se),
+            force,
+        }
+    };
+    effects.map(one).collect()
 }
 
 /// What was left aside of the measurements, and what is unusual of what is named.

@@ -112,7 +112,7 @@ impl Noise {
     /// Where readings have a stated error and nothing was repeated: coefficients scatter by 5 %, the
     /// force along the path by 12 %, as in common beds.
     #[must_use]
-    pub fn assumed_scatter(instrument: &Instrument) -> Self {
+    pub(crate) fn assumed_scatter(instrument: &Instrument) -> Self {
         Self { source: NoiseSource::AssumedScatter, ..Self::guess(instrument) }
     }
 
@@ -244,7 +244,7 @@ impl Noise {
     /// What the mean of a condition scatters by together with all its runs, a column for each coefficient and for the
     /// angle: its covariance is the product with the transposed. `None` where nothing scatters between conditions.
     #[must_use]
-    pub fn between_conditions(&self, sensitivity: &Sensitivity) -> Option<DMatrix<f64>> {
+    pub(crate) fn between_conditions(&self, sensitivity: &Sensitivity) -> Option<DMatrix<f64>> {
         let slope = sensitivity.by_coefficients();
         let of_coefficients = slope.column_iter().filter(|_| self.sessions.sd > 0.0);
         let mut columns: Vec<_> = of_coefficients.map(|column| self.sessions.sd * column).collect();
@@ -254,7 +254,7 @@ impl Noise {
 
     /// The column of the angle among these.
     #[must_use]
-    pub fn angle_of_condition(&self, sensitivity: &Sensitivity) -> Option<DVector<f64>> {
+    pub(crate) fn angle_of_condition(&self, sensitivity: &Sensitivity) -> Option<DVector<f64>> {
         let slope = sensitivity.by_angle();
         let column = slope.column_iter().next()?;
         (self.angles.sd > 0.0).then(|| self.angles.sd * column)

@@ -179,7 +179,7 @@ impl Observable {
 
     /// Whether it is a place, whose errors are lengths.
     #[must_use]
-    pub fn is_position(self) -> bool {
+    pub(crate) fn is_position(self) -> bool {
         matches!(self, Self::Depth | Self::Range | Self::FinalDepth | Self::FinalRange)
     }
 

@@ -111,13 +111,13 @@ impl Observed {
 
     /// Whether any condition that may be fitted to was repeated.
     #[must_use]
-    pub fn has_repeats(&self) -> bool {
+    pub(crate) fn has_repeats(&self) -> bool {
         self.contrasts() > 0
     }
 
     /// How many independent deviations from the means of conditions the repeats give.
     #[must_use]
-    pub fn contrasts(&self) -> usize {
+    pub(crate) fn contrasts(&self) -> usize {
         self.fit.iter().map(|&index| self.conditions[index].runs.len() - 1).sum()
     }
 

@@ -49,7 +49,7 @@ pub struct Unpredicted {
 /// The held-out conditions that all of several models predict, each at its point, and the others: errors of models are
 /// compared over the same conditions.
 #[must_use]
-pub fn predictable(models: &[(FitProblem<'_>, &Point)]) -> (Vec<usize>, Vec<Unpredicted>) {
+pub(crate) fn predictable(models: &[(FitProblem<'_>, &Point)]) -> (Vec<usize>, Vec<Unpredicted>) {
     let Some((first, _)) = models.first() else { return (Vec::new(), Vec::new()) };
     let mut unpredicted = Vec::new();
     let mut is_predicted = |&condition: &usize| {

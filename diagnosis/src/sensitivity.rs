@@ -46,7 +46,7 @@ impl Point {
     ///
     /// # Errors
     /// If the model cannot be integrated there.
-    pub fn predict_run(
+    pub(crate) fn predict_run(
         &self,
         forward: &dyn Forward,
         condition: usize,
@@ -233,7 +233,7 @@ impl Sensitivity {
 
     /// What the mean of runs differs by from the run of the mean bed, to second order in the scatter.
     #[must_use]
-    pub fn shift_of_mean(&self, spread: &Spread) -> DVector<f64> {
+    pub(crate) fn shift_of_mean(&self, spread: &Spread) -> DVector<f64> {
         0.5 * &self.curvature * self.spread(spread).map(|sd| sd * sd)
     }
 }
@@ -286,7 +286,7 @@ pub enum Direction {
 ///
 /// # Errors
 /// If the model cannot be integrated at `point` itself.
-pub fn force_response(
+pub(crate) fn force_response(
     point: &Point,
     forward: &dyn Forward,
     condition: usize,

@@ -449,7 +449,7 @@ impl Diagnosis {
 
     /// Whether the verdict says that the model lacks an effect.
     #[must_use]
-    pub fn is_something_missing(&self) -> bool {
+    pub(crate) fn is_something_missing(&self) -> bool {
         matches!(
             self.verdict,
             Verdict::Supported

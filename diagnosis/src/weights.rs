@@ -69,7 +69,7 @@ impl Weight {
 
     /// `vector` in units of its standard deviation, freed of correlation.
     #[must_use]
-    pub fn whiten(&self, vector: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn whiten(&self, vector: &DVector<f64>) -> DVector<f64> {
         let mut white = vector.clone();
         // The diagonal of a Cholesky factor is positive, so there is a solution.
         self.factor.l_dirty().solve_lower_triangular_mut(&mut white);
@@ -78,7 +78,7 @@ impl Weight {
 
     /// Every column of `matrix` likewise.
     #[must_use]
-    pub fn whiten_columns(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(crate) fn whiten_columns(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
         let mut white = matrix.clone();
         self.factor.l_dirty().solve_lower_triangular_mut(&mut white);
         white
@@ -93,7 +93,7 @@ impl Weight {
     /// The same less what the condition's own angle is off by, as likely as `white` and the scatter of angles make it: the
     /// conditional mean of normal errors. No model predicts how well a launcher was set.
     #[must_use]
-    pub fn colour_without_angle(&self, white: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn colour_without_angle(&self, white: &DVector<f64>) -> DVector<f64> {
         match &self.angle {
             Some(angle) => self.colour(white) - angle * self.whiten(angle).dot(white),
             None => self.colour(white),
@@ -102,14 +102,14 @@ impl Weight {
 
     /// Standard error of each number of the mean.
     #[must_use]
-    pub fn standard_errors(&self) -> DVector<f64> {
+    pub(crate) fn standard_errors(&self) -> DVector<f64> {
         let factor = self.factor.l();
         DVector::from_iterator(factor.nrows(), factor.row_iter().map(|row| row.norm()))
     }
 
     /// Logarithm of the determinant of the covariance of the mean.
     #[must_use]
-    pub fn log_determinant(&self) -> f64 {
+    pub(crate) fn log_determinant(&self) -> f64 {
         log_determinant(&self.factor)
     }
 

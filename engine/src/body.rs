@@ -182,7 +182,7 @@ impl RigidBody {
 
     /// How far its lowest point lies below its centre of mass (m).
     #[must_use]
-    pub fn reach_down(&self) -> f64 {
+    pub(crate) fn reach_down(&self) -> f64 {
         self.part[0].surface.support(self.orientation.inverse_transform_vector(&-Vec3::z()))
     }
 

@@ -98,7 +98,7 @@ impl Feature {
 
     /// Its foremost point (m, body frame) in the direction of the unit vector `towards`.
     #[must_use]
-    pub fn foremost(&self, towards: Vec3) -> Vec3 {
+    pub(crate) fn foremost(&self, towards: Vec3) -> Vec3 {
         match self.kind {
             Kind::Ball => self.middle() + towards * self.radius,
             Kind::Dome { is_upper } if (towards.z >= 0.0) == is_upper || towards.z == 0.0 => {

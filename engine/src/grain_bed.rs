@@ -466,7 +466,7 @@ impl GrainBed {
     /// the translation. A sphere that spins about the normal of its only contact is stopped by nothing
     /// but a law of twisting.
     #[must_use]
-    pub fn mean_restless_energy(&self) -> f64 {
+    pub(crate) fn mean_restless_energy(&self) -> f64 {
         let restless = match self.grains.space {
             Space::Planar => self.kinetic_energy(),
             Space::Spatial => self.sums_of_grains.iter().map(|block| block.translation).sum(),

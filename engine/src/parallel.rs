@@ -7,12 +7,12 @@
 use crate::error::ThreadsError;
 
 /// Grains per block.
-pub const BLOCK: usize = 512;
+pub(crate) const BLOCK: usize = 512;
 
 /// The block of grain `i`.
 #[inline]
 #[must_use]
-pub fn block_of(i: usize) -> usize {
+pub(crate) fn block_of(i: usize) -> usize {
     i / BLOCK
 }
 

@@ -40,7 +40,7 @@ impl Space {
 
     /// Cross-section of a sphere (m²), or the diameter of a disc (m).
     #[must_use]
-    pub fn grain_cross_section(self, radius: f64) -> f64 {
+    pub(crate) fn grain_cross_section(self, radius: f64) -> f64 {
         match self {
             Self::Planar => 2.0 * radius,
             Self::Spatial => std::f64::consts::PI * radius * radius,

@@ -86,7 +86,7 @@ impl Stopping {
     /// The tip of a link that meets the bed so at `time` (s): it has stopped when it no longer sinks
     /// (S0, the end of the penetration).
     #[must_use]
-    pub fn of_tip(time: f64, followed: Followed) -> Self {
+    pub(crate) fn of_tip(time: f64, followed: Followed) -> Self {
         let start = Self::new(followed);
         Self { is_tip: true, before: Sample { time, ..start.before }, now: time, ..start }
     }

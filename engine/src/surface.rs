@@ -95,14 +95,14 @@ impl Placement {
     /// A world point in the body frame at the end of the step.
     #[inline]
     #[must_use]
-    pub fn to_body(&self, point: Vec3) -> Vec3 {
+    pub(crate) fn to_body(&self, point: Vec3) -> Vec3 {
         self.orientation.inverse_transform_vector(&(point - self.position))
     }
 
     /// A world point in the body frame half a step earlier.
     #[inline]
     #[must_use]
-    pub fn to_body_half(&self, point: Vec3) -> Vec3 {
+    pub(crate) fn to_body_half(&self, point: Vec3) -> Vec3 {
         self.orientation_half.inverse_transform_vector(&(point - self.position_half))
     }
 
@@ -110,13 +110,13 @@ impl Placement {
     /// reference point.
     #[inline]
     #[must_use]
-    pub fn velocity_at(&self, arm: Vec3) -> Vec3 {
+    pub(crate) fn velocity_at(&self, arm: Vec3) -> Vec3 {
         self.velocity_now + self.spin_now.cross(&arm)
     }
 
     /// Bound on the speed of any point of a part of radius `bounding_radius` (m/s).
     #[must_use]
-    pub fn max_speed(&self, bounding_radius: f64) -> f64 {
+    pub(crate) fn max_speed(&self, bounding_radius: f64) -> f64 {
         self.velocity.norm() + self.spin.norm() * bounding_radius
     }
 }

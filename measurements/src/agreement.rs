@@ -113,7 +113,7 @@ impl Scalar {
 
     /// The key of its definition.
     #[must_use]
-    pub fn definition_key(self) -> &'static str {
+    pub(crate) fn definition_key(self) -> &'static str {
         match self {
             Self::StopTime => "stop_definition",
             Self::FinalDepth | Self::FinalRange => "final",
@@ -143,7 +143,7 @@ impl Scalar {
 impl Held {
     /// What follows, as a clause.
     #[must_use]
-    pub fn outcome_in_words(&self) -> String {
+    pub(crate) fn outcome_in_words(&self) -> String {
         let own = self.misses.first().map_or("", |miss| miss.definition);
         match self.outcome {
             Outcome::Follows => format!("they follow `{own}`"),

@@ -172,7 +172,7 @@ impl MeasurementSet {
 
     /// Gravity (m/s²) in the bed that `run` was made in.
     #[must_use]
-    pub fn gravity_of(&self, run: &Run) -> f64 {
+    pub(crate) fn gravity_of(&self, run: &Run) -> f64 {
         self.bed_of(&self.conditions[run.condition]).gravity
     }
 
@@ -200,7 +200,7 @@ impl MeasurementSet {
     }
 
     /// The one bed, or all of several.
-    pub fn all_beds(&self) -> impl Iterator<Item = &Bed> {
+    pub(crate) fn all_beds(&self) -> impl Iterator<Item = &Bed> {
         let one = self.beds.is_empty().then_some(&self.bed);
         one.into_iter().chain(self.beds.iter().map(|named| &named.bed))
     }

@@ -10,7 +10,7 @@ use super::assembly::{Assembly, COORDINATES, PARTS, State};
 use super::error::ImpactError;
 use super::fluid;
 use super::holding::{accelerate, is_held};
-use super::modes::{AXES, Modes};
+use super::modes::{AXES, Held, Modes};
 use super::motion::System;
 use super::observe::{Observer, SolverStep};
 use super::solver::{Plan, Solver, Tolerance};
@@ -390,6 +390,35 @@ impl Impact {
         progress: &mut Progress,
         fired: &Fired,
     ) -> Course {
+        let (still, in_bed, changed) = self.note(*time, state, progress, fired);
+        let stopping = fired.which[STOPPING];
+        let creeping = progress.modes.creeping;
+        if stopping && !creeping && is_held(system, state, &progress.modes) {
+            self.come_to_rest(system, time, state, progress);
+            return Course::New;
+        }
+        if !(changed || stopping) {
+            return Course::Same;
+        }
+        self.change_modes(system, state, progress, (still, in_bed, stopping));
+        if progress.held {
+            if self.assembly.ends_with_its_tips() {
+                state.rate = [0.0; COORDINATES];
+            }
+            self.close(*time, state, progress);
+        }
+        Course::New
+    }
+
+    /// Takes note of what happened to each part and to the whole: what is held then, what is in the bed, and whether
+    /// either changed.
+    fn note(
+        &self,
+        time: f64,
+        state: &State,
+        progress: &mut Progress,
+        fired: &Fired,
+    ) -> (Held, [bool; PARTS], bool) {
         let mut still = progress.modes.held();
         let mut in_bed = progress.modes.in_bed;
         let mut changed = false;
@@ -399,15 +428,15 @@ impl Impact {
             let stop = &mut progress.parts[index];
             if own[SURFACE] {
                 in_bed[index] = !in_bed[index];
-                stop.contact = stop.contact.or(Some(*time));
+                stop.contact = stop.contact.or(Some(time));
                 changed = true;
             }
             if own[SINKING] {
-                stop.vertical = Some(*time);
+                stop.vertical = Some(time);
                 stop.depth = stop.depth.max(-part.tip.z);
             }
             if own[FORWARD] {
-                stop.horizontal = Some(*time);
+                stop.horizontal = Some(time);
                 stop.range = (part.tip.x - progress.first_x[index]).abs();
             }
             for component in 0..2 {
@@ -421,21 +450,24 @@ impl Impact {
         if fired.which[SLOWING] {
             progress.rest = match progress.rest {
                 Some(_) => None,
-                None => Some(*time),
+                None => Some(time),
             };
         }
         if fired.which[SLOW] {
-            progress.slow = Some(*time);
+            progress.slow = Some(time);
         }
-        let stopping = fired.which[STOPPING];
+        (still, in_bed, changed)
+    }
+
+    /// Goes on in the modes that `still`, what is in the bed, and friction that may hold the whole leave.
+    fn change_modes(
+        &self,
+        system: &System<'_>,
+        state: &mut State,
+        progress: &mut Progress,
+        (mut still, in_bed, stopping): (Held, [bool; PARTS], bool),
+    ) {
         let creeping = progress.modes.creeping;
-        if stopping && !creeping && is_held(system, state, &progress.modes) {
-            self.come_to_rest(system, time, state, progress);
-            return Course::New;
-        }
-        if !(changed || stopping) {
-            return Course::Same;
-        }
         if stopping && progress.modes.straight.is_some() {
             still[0] = [true; 2];
         }
@@ -456,13 +488,6 @@ impl Impact {
         } else {
             held[0] == [true; 2]
         };
-        if progress.held {
-            if self.assembly.ends_with_its_tips() {
-                state.rate = [0.0; COORDINATES];
-            }
-            self.close(*time, state, progress);
-        }
-        Course::New
     }
 
     /// Covers what is left of the way at constant deceleration.

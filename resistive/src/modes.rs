@@ -49,9 +49,12 @@ pub(super) struct Modes {
     pub(super) creeping: bool,
 }
 
+/// By part, which components of its velocity are held.
+pub(super) type Held = [[bool; 2]; PARTS];
+
 impl Modes {
     /// Which components are held; above the surface nothing is.
-    pub(super) fn held(&self) -> [[bool; 2]; PARTS] {
+    pub(super) fn held(&self) -> Held {
         std::array::from_fn(|part| {
             let gripped = self.gripping && self.in_bed[part];
             self.sense[part].map(|sense| gripped && sense == Sense::Held)

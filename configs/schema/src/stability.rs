@@ -10,20 +10,20 @@ use crate::guess::guessed_packing;
 use crate::model::{BedSource, GrainModel, LawChoice, TimeStep};
 
 /// Steps per shortest collision when `time_step = "auto"`.
-pub const STEPS_PER_COLLISION: f64 = 30.0;
+pub(crate) const STEPS_PER_COLLISION: f64 = 30.0;
 /// Steps per shortest relaxation by damping when `time_step = "auto"`. Half as many and a bed of
 /// many contacts per grain never comes to rest: each contact's damping overshoots.
-pub const STEPS_PER_DAMPING_TIME: f64 = 4.0;
+pub(crate) const STEPS_PER_DAMPING_TIME: f64 = 4.0;
 /// Steps per shortest surface wave when `time_step = "auto"`, a fifth of the Rayleigh time as is usual.
-pub const STEPS_PER_WAVE: f64 = 5.0;
+pub(crate) const STEPS_PER_WAVE: f64 = 5.0;
 /// Fewer steps per relaxation than this are refused.
-pub const FEWEST_STEPS_PER_DAMPING_TIME: f64 = 1.0;
+pub(crate) const FEWEST_STEPS_PER_DAMPING_TIME: f64 = 1.0;
 /// Fewer steps per relaxation than this are accepted with a warning.
-pub const FEW_STEPS_PER_DAMPING_TIME: f64 = 3.0;
+pub(crate) const FEW_STEPS_PER_DAMPING_TIME: f64 = 3.0;
 /// Fewer steps per collision than this are refused.
-pub const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
+pub(crate) const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
 /// Fewer steps per collision than this are accepted with a warning.
-pub const FEW_STEPS_PER_COLLISION: f64 = 20.0;
+pub(crate) const FEW_STEPS_PER_COLLISION: f64 = 20.0;
 
 /// Automatic step of falling grains over that of a run: half as many steps per collision and per
 /// relaxation still bring them down to the same packing.
@@ -222,7 +222,7 @@ pub fn times(model: GrainModel<'_>) -> Times {
 
 /// The times while the bed settles: the grains fall through about its height.
 #[must_use]
-pub fn preparation_times(model: GrainModel<'_>) -> Times {
+pub(crate) fn preparation_times(model: GrainModel<'_>) -> Times {
     Scene::of_preparation(model, fall_speed(model)).times()
 }
 
@@ -253,7 +253,7 @@ pub struct PreparationSteps {
 /// √(g d), which no grain exceeds that drops by half its diameter: contacts under a Hertz law
 /// are the slower the less they are compressed.
 #[must_use]
-pub fn preparation_steps(model: GrainModel<'_>) -> Option<PreparationSteps> {
+pub(crate) fn preparation_steps(model: GrainModel<'_>) -> Option<PreparationSteps> {
     let BedSource::Settle(settle) = &model.medium.bed.source else {
         return None;
     };

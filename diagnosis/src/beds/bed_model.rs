@@ -211,12 +211,6 @@ impl<'a> BedModel<'a> {
         GrainModel { model: self.model, medium: self.medium }
     }
 
-    /// How many impacts fall on one bed, each on grains that the others leave alone.
-    #[must_use]
-    pub fn n_places(&self) -> usize {
-        self.n_places
-    }
-
     /// `n` draws for each of so many `conditions`, on the beds from number `first` on. Those of one
     /// condition are on beds of their own, each. Conditions share beds, not places, as long as there are any
     /// that are fresh: what falls on the same grains misses by the same.
@@ -232,7 +226,7 @@ impl<'a> BedModel<'a> {
 
     /// How many beds `n` draws for each of so many `conditions` are on.
     #[must_use]
-    pub fn n_beds(&self, n: usize, conditions: usize) -> usize {
+    pub(crate) fn n_beds(&self, n: usize, conditions: usize) -> usize {
         (n * conditions).div_ceil(self.n_places).clamp(n, MOST_BEDS * n)
     }
 

@@ -241,7 +241,7 @@ impl BedForward {
 
     /// The names of those of `effects` that are candidates of the simulation.
     #[must_use]
-    pub fn of_the_bed(&self, effects: &[(usize, f64)]) -> Vec<&'static str> {
+    pub(crate) fn of_the_bed(&self, effects: &[(usize, f64)]) -> Vec<&'static str> {
         let bed_candidates = effects.iter().filter_map(|&(index, _)| self.bed_candidate(index));
         bed_candidates.map(|at| self.screened[at].bed_candidate.id).collect()
     }

@@ -20,7 +20,7 @@ pub mod defaults {
     /// Packing fraction that is not stated, around that of the model.
     pub const PACKING: f64 = 0.01;
     /// Packing fraction that is stated without an error.
-    pub const STATED_PACKING: f64 = 0.005;
+    pub(crate) const STATED_PACKING: f64 = 0.005;
     /// Bulk density, relative.
     pub const DENSITY: f64 = 0.02;
     /// Height of the surface, and mean diameter of the grains, relative.

@@ -202,33 +202,4 @@ mod tests {
         rounded[(1, 1)] *= 1.0 + 1e-13;
         assert!(told_apart(rounded, &all).is_none());
     }
-
-    fn held_out(judged: usize, by: Option<Fails>, gain: f64) -> HeldOut {
-        let error = (judged > 0).then_some(1e-3);
-        let one = |by| NotPredicted { condition: "a".into(), by, why: "it never stops".into() };
-        HeldOut {
-            before: error,
-            after: error,
-            noise_floor: error,
-            explained: None,
-            unit: Unit::Position,
-            conditions: LeftOut::Holdout,
-            conditions_judged: judged,
-            not_predicted: by.map(one).into_iter().collect(),
-            ratio_at_most: None,
-            log_density_gain: gain,
-        }
-    }
-
-    #[test]
-    fn what_an_effect_cannot_predict_is_no_gain_of_it() {
-        let doubt = |judged, by, gain| held_out(judged, by, gain).doubt();
-        assert_eq!(doubt(2, None, 4.0), None);
-        assert_eq!(doubt(2, Some(Fails::Before), 4.0), None);
-        let after = doubt(2, Some(Fails::After), 4.0);
-        assert_eq!(after, Some(StrengthReason::ConditionsNotPredicted));
-        assert_eq!(doubt(0, Some(Fails::Both), 0.0), Some(StrengthReason::HeldOutNotJudged));
-        assert_eq!(doubt(2, None, 0.0), Some(StrengthReason::HeldOutNoBetter));
-        assert!(!held_out(0, None, -9.0).refutes(), "no error is larger than none");
-    }
 }

@@ -160,7 +160,7 @@ impl Container {
 
     /// What takes the energy out of waves; `None` where nothing does.
     #[must_use]
-    pub fn absorber(&self, space: Space) -> Option<Absorber> {
+    pub(crate) fn absorber(&self, space: Space) -> Option<Absorber> {
         Absorber::new(self, space)
     }
 

@@ -86,13 +86,13 @@ impl ContactTable {
 
     /// Whether the contact of `row` was touching when last evaluated.
     #[must_use]
-    pub fn is_touching(&self, row: usize) -> bool {
+    pub(crate) fn is_touching(&self, row: usize) -> bool {
         self.candidates[row].record != APART
     }
 
     /// How many contacts touch.
     #[must_use]
-    pub fn n_touching(&self) -> usize {
+    pub(crate) fn n_touching(&self) -> usize {
         self.candidates.iter().filter(|candidate| candidate.record != APART).count()
     }
 

@@ -58,7 +58,7 @@ pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, R
 ///
 /// # Errors
 /// If a figure cannot be drawn, or the log of grains cannot be read again.
-pub fn page_so_far(name: &str, course: &Course, seen: &Seen) -> Result<String, ReportError> {
+pub(crate) fn page_so_far(name: &str, course: &Course, seen: &Seen) -> Result<String, ReportError> {
     let panels = panels_of(&path::pictures(course, None)?);
     let motion = (!panels.is_empty()).then_some(Part::Panels(panels));
     let budget = energy::Budget::of(course);

@@ -98,7 +98,7 @@ impl Impact {
 
     /// What the colours of `quantity` end at (SI).
     #[must_use]
-    pub fn top_of(&self, quantity: Quantity) -> f64 {
+    pub(crate) fn top_of(&self, quantity: Quantity) -> f64 {
         self.tops[quantity.index()]
     }
 

@@ -70,7 +70,7 @@ impl Formula {
     ///
     /// # Errors
     /// If it is another, or if some step of it means nothing: a length plus a speed, the sine of a mass.
-    pub fn check_dimension(
+    pub(crate) fn check_dimension(
         &self,
         wanted: Dimension,
         known: impl Fn(&str) -> Known,

@@ -69,7 +69,7 @@ pub struct Planned {
 impl Plan {
     /// How many points are not the same as one before.
     #[must_use]
-    pub fn n_distinct(&self) -> usize {
+    pub(crate) fn n_distinct(&self) -> usize {
         self.points.iter().map(|point| &point.hash).collect::<BTreeSet<_>>().len()
     }
 }

@@ -143,7 +143,7 @@ pub enum BottomKind {
 impl Container {
     /// The same to the engine, with plain walls where layers absorb.
     #[must_use]
-    pub fn without_layers(&self) -> boundary::Container {
+    pub(crate) fn without_layers(&self) -> boundary::Container {
         let sides = match self.sides {
             SidesKind::Periodic => Sides::Periodic,
             SidesKind::Wall | SidesKind::Absorbing => Sides::Wall,
@@ -338,7 +338,7 @@ impl<'a> GrainModel<'a> {
 
     /// The smallest diameter of a grain (m).
     #[must_use]
-    pub fn smallest_grain(&self) -> f64 {
+    pub(crate) fn smallest_grain(&self) -> f64 {
         match &self.medium.bed.source {
             BedSource::Settle(settle) => {
                 let kinds = settle.grains.iter().filter(|kind| kind.count > 0);

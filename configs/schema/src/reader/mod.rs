@@ -60,13 +60,13 @@ impl<'a> Reader<'a> {
 
     /// The same, which notes what it asks.
     #[must_use]
-    pub fn noting(sources: &'a Sources, kind: FileKind) -> Self {
+    pub(crate) fn noting(sources: &'a Sources, kind: FileKind) -> Self {
         Self { notes: Some(RefCell::default()), ..Self::new(sources, kind) }
     }
 
     /// What was asked, by a reader that notes it.
     #[must_use]
-    pub fn into_asked(self) -> Asked {
+    pub(crate) fn into_asked(self) -> Asked {
         self.notes.map(RefCell::into_inner).unwrap_or_default()
     }
 

@@ -104,7 +104,7 @@ impl SampleMethod {
 
     /// Most points that it draws.
     #[must_use]
-    pub fn most_points(self) -> usize {
+    pub(crate) fn most_points(self) -> usize {
         match self {
             Self::LatinHypercube => POINTS,
             // The generator has so many.
@@ -143,7 +143,7 @@ impl Campaign {
 
     /// Points of one model and one seed.
     #[must_use]
-    pub fn n_settings(&self) -> usize {
+    pub(crate) fn n_settings(&self) -> usize {
         let product = self.product.iter().map(|axis| axis.values.len());
         let sampled = self.sample.as_ref().map_or(1, |sample| sample.count);
         let others = [self.listed.len().max(1), sampled];
