@@ -33,6 +33,16 @@ pub struct AddedForce {
     pub speed: f64,
 }
 
+impl AddedForce {
+    /// Whether it takes away more work than the bed does with it: then a fit has two large forces cancel each other.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        match self.size {
+            Size::AtAMoment { share_of_work, .. } => share_of_work < -1.0,
+            Size::OnTheWayDown { .. } => false,
+        }
+    }
+}
+
 /// The force of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]

@@ -67,6 +67,10 @@ impl Errors {
 /// Standard deviations of one run by which a number has to differ from zero for an error relative to it.
 const FROM_ZERO: f64 = 3.0;
 
+/// Share of the final depth below which a range is that of a vertical impact: the scatter of few repeats may be zero by
+/// chance.
+const LEAST_RANGE: f64 = 0.05;
+
 /// Sums of squares by kind.
 #[derive(Default)]
 pub(crate) struct Sums {
@@ -78,12 +82,15 @@ impl Sums {
     /// Adds the `errors` of the means of `observed`. A number that its scatter does not tell from zero, such as the range of a
     /// vertical impact, has no relative error.
     pub(crate) fn add(&mut self, observed: &ObservedCondition, errors: &DVector<f64>) {
-        let each = observed.layout.kinds().into_iter().zip(errors.iter()).enumerate();
-        for (at, (kind, error)) in each {
+        let kinds = observed.layout.kinds();
+        let depth = kinds.iter().position(|kind| *kind == Observable::FinalDepth);
+        let least_range = depth.map_or(0.0, |at| LEAST_RANGE * observed.mean[at].abs());
+        for (at, (kind, error)) in kinds.into_iter().zip(errors.iter()).enumerate() {
             let slot = &mut self.by_kind[kind as usize];
             *slot = (slot.0 + error * error, slot.1 + 1);
             let value = observed.mean[at];
-            if kind.is_scalar() && value.abs() > FROM_ZERO * observed.scatter(at) {
+            let is_none = kind == Observable::FinalRange && value.abs() < least_range;
+            if kind.is_scalar() && !is_none && value.abs() > FROM_ZERO * observed.scatter(at) {
                 self.relative = (self.relative.0 + (error / value).powi(2), self.relative.1 + 1);
             }
         }

@@ -347,10 +347,11 @@ impl FitProblem<'_> {
     fn first_noise(&self) -> Result<Noise, FitError> {
         if self.observed.has_repeats() {
             Ok(Noise::guess(&self.set.instrument))
+        } else if self.set.kind.has_readings() && self.set.states_errors() {
+            // What is stated of final depths says nothing of how paths scatter.
+            Ok(Noise::assumed_scatter(&self.set.instrument))
         } else if self.observed.has_stated_errors() {
             Ok(Noise::stated())
-        } else if self.set.kind.has_readings() && self.set.states_errors() {
-            Ok(Noise::assumed_scatter(&self.set.instrument))
         } else {
             Err(FitError::NoErrors)
         }

@@ -27,6 +27,9 @@ pub struct HeldOut {
     /// What means of so many runs would miss the truth by.
     #[serde(serialize_with = "six_digits_or_null")]
     pub noise_floor: Option<f64>,
+    /// What the right model would miss it by: the noise of the means, and what the fit leaves unknown.
+    #[serde(skip)]
+    pub(crate) expected: Option<f64>,
     /// Share of what exceeds the noise that is explained: (before² − after²)/(before² − noise²); none where nothing does.
     #[serde(serialize_with = "six_digits_or_null")]
     pub explained: Option<f64>,
@@ -132,6 +135,7 @@ impl HeldOut {
             before: Some(before),
             after: Some(after),
             noise_floor: Some(noise_floor),
+            expected: Some(noise_floor),
             explained: None,
             unit: Unit::Position,
             conditions: LeftOut::Holdout,
@@ -192,10 +196,12 @@ impl HeldOut {
             pick(&noise),
         );
         let [before, after, noise_floor, explained] = errors;
+        let open = both.iter().map(|(_, before, _)| before.open).sum::<f64>() / both.len() as f64;
         Ok(Self {
             before,
             after,
             noise_floor,
+            expected: noise_floor.map(|floor| floor * (1.0 + open).sqrt()),
             explained,
             unit,
             conditions,
@@ -240,6 +246,13 @@ impl HeldOut {
     #[must_use]
     pub(crate) fn is_above_noise(&self) -> Option<bool> {
         Some(self.before? >= CLEAR * self.noise_floor?)
+    }
+
+    /// Whether the model without it misses by more than [`CLEAR`] times what the right one would; `None` where that is not
+    /// known.
+    #[must_use]
+    pub(crate) fn is_above_expected(&self) -> Option<bool> {
+        Some(self.before? >= CLEAR * self.expected?)
     }
 
     /// Whether it is missed by that much with what is proposed, too; `None` where that is not known.
@@ -404,6 +417,7 @@ mod tests {
             before: error,
             after: error,
             noise_floor: error,
+            expected: error,
             explained: None,
             unit: Unit::Position,
             conditions: LeftOut::Holdout,

@@ -176,6 +176,8 @@ impl Judge<'_> {
             );
             let mut found = self.refuse(Grounds { hint, ..grounds })?;
             found.strength_reasons.push(StrengthReason::NoLikelierThanAnyForce);
+            // The verdicts that were counted rest on no effect that explains the data.
+            found.probability = None;
             found.strength = Strength::of(&found.strength_reasons);
             return Ok(found);
         }
@@ -263,6 +265,9 @@ impl Judge<'_> {
         if let Some(hint) = self.needs_an_implausible_apparatus(&self.leader) {
             return self.refuse(Grounds { hint, ..grounds });
         }
+        if let Some(hint) = self.takes_away_too_much()? {
+            return self.refuse(Grounds { hint, ..grounds });
+        }
         let held_out = Some(held_out);
         if let Some(hint) = held_out.as_ref().and_then(|held_out| self.too_small(held_out)) {
             let grounds = Grounds { hint, held_out, ..grounds };
@@ -286,6 +291,17 @@ impl Judge<'_> {
             effects.collect::<Vec<_>>().join(" and "),
             error.id
         ))
+    }
+
+    /// That the best effect takes away more resistance than it leaves, in a sentence.
+    fn takes_away_too_much(&self) -> Result<Option<String>, FitError> {
+        let listed = as_listed(self.problem, &self.leader)?;
+        let forces = added_forces(self.problem, &listed);
+        let is_cancelled = forces.iter().flatten().any(AddedForce::is_cancelled);
+        let name = self.name(self.ranking.scores[0].candidate());
+        Ok(is_cancelled.then(|| {
+            format!("{name} explains the data only if it takes away more resistance than it leaves")
+        }))
     }
 
     /// The two effects that explain the data, if there are two; where one does (`is_explained`), two have to be far more
@@ -366,7 +382,7 @@ impl Judge<'_> {
             errors
         };
         let mut strength_reasons = doubts(problem, proposed, &amplitudes, &held_out);
-        if verdict.is_explained() && held_out.is_above_noise() == Some(true) {
+        if verdict.is_explained() && held_out.is_above_expected() == Some(true) {
             strength_reasons.push(StrengthReason::HeldOutAboveNoise);
         }
         Ok(Diagnosis {

@@ -113,7 +113,8 @@ impl Noise {
     /// force along the path by 12 %, as in common beds.
     #[must_use]
     pub(crate) fn assumed_scatter(instrument: &Instrument) -> Self {
-        Self { source: NoiseSource::AssumedScatter, ..Self::guess(instrument) }
+        let spread = Spread::of_one_run(0.05, 0.12, instrument);
+        Self { source: NoiseSource::AssumedScatter, spread, ..Self::guess(instrument) }
     }
 
     /// A first guess where there are repeats: coefficients to 5 %, the path to 12 %.

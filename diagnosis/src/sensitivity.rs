@@ -85,6 +85,13 @@ impl Spread {
         let level = instrument.level_sigma.unwrap_or(0.0);
         Self { coefficient, path, speed, angle, level, clock: 0.0, start: 0.0 }
     }
+
+    /// The same with a clock that starts with some frame: it is off by a part of one, all parts alike. Repeats would tell.
+    #[must_use]
+    pub(crate) fn of_one_run(coefficient: f64, path: f64, instrument: &Instrument) -> Self {
+        let clock = instrument.rate.map_or(0.0, |rate| 1.0 / (f64::sqrt(12.0) * rate));
+        Self { clock, ..Self::new(coefficient, path, instrument) }
+    }
 }
 
 /// One random input of a run.

@@ -100,6 +100,7 @@ impl Confirmation {
             before,
             after,
             noise_floor,
+            expected: noise_floor,
             unit,
             conditions: LeftOut::Holdout,
             conditions_judged: judged,

@@ -14,6 +14,9 @@ const ALONE: f64 = 1e-8;
 /// A Gauss-Newton step that leaves so many times more of a condition than the fit to all is taken for one too far.
 const FAR: f64 = 2.0;
 
+/// Standard errors of a prediction, in those of the noise, from which a miss of it says nothing.
+const OPEN: f64 = 5.0;
+
 /// A condition with both predictions of it.
 pub(super) type Pair = (usize, Predicted, Predicted);
 
@@ -50,6 +53,8 @@ pub(super) struct Predicted {
     pub(super) error: DVector<f64>,
     /// Logarithm of the predictive density, up to a constant of the measurements.
     pub(super) log_density: f64,
+    /// Mean variance of the prediction by what is unknown of the parameters, over that of the noise.
+    pub(super) open: f64,
 }
 
 impl Predicted {
@@ -68,8 +73,12 @@ impl Predicted {
             let rows = data.measured();
             let residual = data.residual(&fitted.fit.point)?.rows(0, rows).into_owned();
             let jacobian = data.jacobian(&fitted.fit)?.rows(0, rows).into_owned();
-            let log_density = density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
-            Ok(Self { error: weights[0].colour_without_angle(&residual), log_density })
+            let covariance = &jacobian * &parameters * jacobian.transpose();
+            Ok(Self {
+                error: weights[0].colour_without_angle(&residual),
+                log_density: density(&residual, &covariance),
+                open: covariance.trace() / rows.max(1) as f64,
+            })
         };
         let attempt = |&condition: &usize| match one(condition) {
             Ok(predicted) => Ok(Ok(predicted)),
@@ -80,7 +89,7 @@ impl Predicted {
     }
 
     /// Every condition that was fitted to, by one Gauss-Newton step without it from the fit of
-    /// `fitted`, under the noise of `noisy`, or by a fit where that step goes far; none where one alone fixes a parameter.
+    /// `fitted`, under the noise of `noisy`, or by a fit where that step goes far; none that alone fixes what it is predicted by.
     pub(super) fn left_out(
         problem: &FitProblem<'_>,
         noisy: &Fitted,
@@ -105,14 +114,23 @@ impl Predicted {
                 predicted.push(Err("it alone fixes a parameter".to_owned()));
                 continue;
             };
+            let covariance = &slope * others.solve(&slope.transpose());
+            let open = covariance.trace() / rows.max(1) as f64;
+            if open > OPEN * OPEN {
+                predicted.push(Err("the other conditions say too little of it".to_owned()));
+                continue;
+            }
             let step = others.solve(&(&pull - slope.tr_mul(&own)));
             let stepped = &own - &slope * step;
             let residual = match stepped.norm() > FAR * own.norm() {
                 true => refitted_without(problem, noisy, fitted, condition).unwrap_or(stepped),
                 false => stepped,
             };
-            let log_density = density(&residual, &(&slope * others.solve(&slope.transpose())));
-            predicted.push(Ok(Self { error: weight.colour_without_angle(&residual), log_density }));
+            predicted.push(Ok(Self {
+                error: weight.colour_without_angle(&residual),
+                log_density: density(&residual, &covariance),
+                open,
+            }));
         }
         Ok(predicted)
     }
@@ -176,7 +194,8 @@ mod tests {
         let runs = (0..3).map(|at| scalar_run(at, [Some(0.1), None, None])).collect();
         let conditions = speeds.map(|speed| condition(speed, 90.0)).into();
         let observed = Observed::of(&set(Kind::Scalar, conditions, runs));
-        let predicted = |log_density| Ok(Predicted { error: DVector::zeros(1), log_density });
+        let predicted =
+            |log_density| Ok(Predicted { error: DVector::zeros(1), log_density, open: 0.0 });
         let fails = || Err("it never stops".to_owned());
         let before = vec![predicted(-1.0), predicted(-20.0), fails()];
         let after = vec![predicted(-2.0), fails(), fails()];
