@@ -17,6 +17,7 @@ use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::table_file;
 use crate::text::{lines, noise_words, shown, table};
+use crate::verdict;
 use crate::workbench::{Flags, failed};
 
 /// Arguments of `plunge compare`.
@@ -88,7 +89,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             }
             None => {
                 floors.push(None);
-                forwards.push(Box::new(model.forward_before_exact_apparatus(&measured, flags)?));
+                forwards.push(Box::new(model.forward_before_stated_apparatus(&measured, flags)?));
             }
         }
     }
@@ -147,6 +148,13 @@ fn as_text(
     let refitted = tables::parameters(models);
     if !refitted.is_empty() {
         text.push_str(&format!("\nparameters, refitted\n{}", shown(&refitted)));
+    }
+    for model in models {
+        let seen = verdict::seen(&model["apparatus"]);
+        if !seen.is_empty() {
+            let name = model["model"].as_str().unwrap_or_default();
+            text.push_str(&format!("\nApparatus by {name}: {}.\n", seen.join(", ")));
+        }
     }
     text.push_str("\nwhere the force is wrong (significant at a false-discovery rate of 5 %)\n");
     let failures = tables::failures(models);

@@ -166,7 +166,7 @@ fn apparatus(verdict: Verdict, object: &Value) -> String {
 }
 
 /// Those of `errors` that are three standard errors away from zero.
-fn seen(errors: &Value) -> Vec<String> {
+pub(crate) fn seen(errors: &Value) -> Vec<String> {
     let errors = errors.as_array().map_or(&[][..], Vec::as_slice);
     let is_seen = |error: &&Value| {
         let [value, se] = ["value", "se"].map(|key| error[key].as_f64());

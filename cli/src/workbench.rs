@@ -333,16 +333,17 @@ impl Candidate {
         self.forward_before(&measured.set, measured, flags)
     }
 
-    /// The same with an apparatus that has no errors shared by runs: `compare` reports the whole error of a model.
+    /// The same with the errors shared by runs that the set states, and no others: `compare` reports the whole error of a
+    /// model, but what the user knows of the apparatus.
     ///
     /// # Errors
     /// Likewise.
-    pub(crate) fn forward_before_exact_apparatus(
+    pub(crate) fn forward_before_stated_apparatus(
         &self,
         measured: &Measured,
         flags: &Flags,
     ) -> Result<ResistiveForward, CommandError> {
-        let instrument = measured.set.instrument.without_shared_errors();
+        let instrument = measured.set.instrument.with_stated_errors_alone();
         let exact = MeasurementSet { instrument, ..measured.set.clone() };
         self.forward_before(&exact, measured, flags)
     }

@@ -16,6 +16,7 @@ use crate::observed::Observed;
 use crate::residual::{Unpredicted, predictable};
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
+use crate::verdict::ApparatusError;
 use crate::where_it_fails::{Failing, WhereItFails};
 
 /// A model under the name that a report gives it.
@@ -80,6 +81,9 @@ pub struct ModelComparison {
     pub p_lof: Option<f64>,
     /// Root mean square errors by kind of number.
     pub rms: Rms,
+    /// Errors of the apparatus that the set states, as this model has them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub apparatus: Vec<ApparatusError>,
     /// Where the force is wrong.
     pub fails: Vec<ForceError>,
     /// All that is known of where it fails.
@@ -193,6 +197,7 @@ fn compare_one(
         parameters: parameters(problem.forward, &fitted.fit),
         chi2_per_n: measured.norm_squared() / measured.len() as f64,
         p_lof,
+        apparatus: ApparatusError::all(problem.forward, &fitted),
         rms: Rms { fit: json(&failing.fit), holdout: json(&failing.holdout) },
         fails: failing.force_errors.fails(),
         failing,

@@ -96,6 +96,7 @@ pub use shipped::{SHIPPED_SETS, ShippedSet, find as find_shipped_set};
 pub use sizes::SizeError;
 pub use strays::{Cleaned, stray_frames, without_strays};
 pub use template::TEMPLATE;
+pub use trajectories::MOST_READINGS;
 pub use write::WriteError;
 pub use zeros::{Offset, RunContact, Severity, SpeedRatio, Zero, Zeros};
 
@@ -268,6 +269,24 @@ pub struct Instrument {
 }
 
 impl Instrument {
+    /// The same with the errors that runs share where they are stated, and exact where they are not.
+    #[must_use]
+    pub fn with_stated_errors_alone(self) -> Self {
+        let exact = |stated: Option<f64>| stated.or(Some(0.0));
+        Self {
+            time_sigma: exact(self.time_sigma),
+            zero_sigma: exact(self.zero_sigma),
+            surface_sigma: exact(self.surface_sigma),
+            speed_bias_sigma_rel: exact(self.speed_bias_sigma_rel),
+            angle_bias_sigma_deg: exact(self.angle_bias_sigma_deg),
+            scale_sigma_rel: exact(self.scale_sigma_rel),
+            mass_sigma_rel: exact(self.mass_sigma_rel),
+            tilt_sigma_deg: exact(self.tilt_sigma_deg),
+            session_sigma_rel: exact(self.session_sigma_rel),
+            ..self
+        }
+    }
+
     /// The same without any error that runs share, as before runs of a simulation.
     #[must_use]
     pub fn without_shared_errors(self) -> Self {

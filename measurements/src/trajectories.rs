@@ -15,7 +15,7 @@ use super::{Frame, Run};
 
 /// Most readings of a set: at 40 bytes each, and twice that while a list grows, they stay below
 /// 200 MB.
-const MOST: usize = 2_000_000;
+pub const MOST_READINGS: usize = 2_000_000;
 
 // The places of the columns in [`TRAJECTORIES`].
 const RUN: usize = 0;
@@ -145,8 +145,8 @@ impl<'a, R: BufRead> Readings<'a, R> {
             return None;
         }
         self.rows += 1;
-        if self.before + self.rows > MOST {
-            let what = format!("{} has more than {MOST} rows", file_name(self.name));
+        if self.before + self.rows > MOST_READINGS {
+            let what = format!("{} has more than {MOST_READINGS} rows", file_name(self.name));
             findings.report(
                 Diagnostic::error(what)
                     .help("keep every second or tenth row: neighbouring readings say the same"),

@@ -153,6 +153,22 @@ const PROJECTS: [(&str, &str); 8] = [
     ("pxp", "Igor"),
 ];
 
+/// Most lines of a table: as many readings as a set may have.
+const MOST_LINES: usize = measurements::MOST_READINGS;
+
+/// Refuses a table of too many lines, before it is read.
+fn refuse_long(file: &str, bytes: &[u8]) -> Result<(), Fault> {
+    let lines = bytes.iter().filter(|byte| **byte == b'\n').count();
+    match lines > MOST_LINES {
+        true => Err(Fault::new(
+            file,
+            format!("it has {lines} lines, and a set holds {MOST_LINES} readings at most"),
+            "export the frames around the impacts, or every n-th",
+        )),
+        false => Ok(()),
+    }
+}
+
 /// The sheets of the file `path` with this content.
 ///
 /// # Errors
@@ -176,7 +192,10 @@ pub(super) fn sheets(path: &Path, bytes: &[u8]) -> Result<Vec<Sheet>, Fault> {
     let is_book = spreadsheet::ENDINGS.contains(&ending.as_str()) && !is_text;
     let sheets = match is_book {
         true => spreadsheet::read(&file, &stem, bytes)?,
-        false => vec![text::read(&file, &stem, bytes)?],
+        false => {
+            refuse_long(&file, bytes)?;
+            vec![text::read(&file, &stem, bytes)?]
+        }
     };
     match sheets.iter().all(|sheet| sheet.rows.is_empty()) {
         true => Err(Fault::new(&file, "it is empty", "a line of names, then rows of numbers")),
