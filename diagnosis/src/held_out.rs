@@ -13,6 +13,7 @@ use crate::observed::Observed;
 use crate::random::{Purpose, stream};
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::strength::StrengthReason;
+pub use predicted::{Fails, NotPredicted};
 use predicted::{Pair, Predicted, in_both};
 
 /// Errors on held-out conditions without and with what is proposed.
@@ -49,29 +50,6 @@ pub struct HeldOut {
     /// conditions that can be predicted both with and without it.
     #[serde(serialize_with = "six_digits")]
     pub log_density_gain: f64,
-}
-
-/// A condition that was left out and that a model cannot predict.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NotPredicted {
-    /// Its name in the set.
-    pub condition: String,
-    /// Which model cannot.
-    pub by: Fails,
-    /// Why not.
-    pub why: String,
-}
-
-/// Which of two models fails.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Fails {
-    /// The model as it is.
-    Before,
-    /// The model with what is proposed.
-    After,
-    /// Either.
-    Both,
 }
 
 /// Which conditions were left out of a fit.

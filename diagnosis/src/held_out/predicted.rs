@@ -1,12 +1,35 @@
 //! Conditions as fits predict them that have not seen them.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use serde::Serialize;
 
-use super::{Fails, NotPredicted};
 use crate::fit::Data;
 use crate::fit_problem::{FitError, FitProblem, Fitted};
 use crate::noise::log_determinant;
 use crate::observed::Observed;
+
+/// A condition that was left out and that a model cannot predict.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NotPredicted {
+    /// Its name in the set.
+    pub condition: String,
+    /// Which model cannot.
+    pub by: Fails,
+    /// Why not.
+    pub why: String,
+}
+
+/// Which of two models fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fails {
+    /// The model as it is.
+    Before,
+    /// The model with what is proposed.
+    After,
+    /// Either.
+    Both,
+}
 
 /// Share of the information on a combination of parameters that has to be left without a condition.
 const ALONE: f64 = 1e-8;

@@ -137,7 +137,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 11,
         what: "all repeats fall on one bed",
-        file: "diagnosis/src/beds/stand.rs",
+        file: "diagnosis/src/beds/bed_model.rs",
         edits: &[("(first + at % beds) as u64", "(first + 0 * (at % beds)) as u64")],
         suites: &[test("validation", "beds", "campaign")],
     },
