@@ -19,7 +19,7 @@ use super::settings::{Settings, Tracked};
 use super::surface::{self, Level, Seen};
 use super::tilt::{Flight, tilt, turned_back};
 use super::track::deviation;
-use super::{falls, import_file, inputs, written};
+use super::{days, falls, import_file, inputs, written};
 
 /// Reads `paths` under `options` into the set that is to stand in the folder `out`.
 ///
@@ -44,6 +44,7 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     told.extend(seen);
     told.extend(tilt.map(of_tilt));
     told.extend(conditions::of_other_depths(&runs, &grouping));
+    told.extend(days::told(&runs));
     told.extend(falls::off_their_names(&runs, settings.gravity));
     let mut notes = notes(&runs, &level, &grouping.manner, &settings);
     notes.append(&mut told);

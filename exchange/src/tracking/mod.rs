@@ -14,6 +14,7 @@ mod begun;
 mod bodies;
 mod called;
 mod conditions;
+mod days;
 mod density;
 mod even;
 mod falls;

@@ -8,8 +8,8 @@ use engine::units::{Dimension, significant};
 use measurements::{Reading, median};
 
 use super::bodies::Body;
+use super::days;
 use super::fault::Fault;
-use super::names::OF_SESSION;
 use super::options::Options;
 use super::run::Run;
 use super::settings::Settings;
@@ -181,11 +181,12 @@ fn runs(known: &Known<'_>) -> String {
         );
     }
     let has_order = known.runs.iter().all(|run| label(run, "order").is_some());
-    let has_session = known.runs.iter().all(|run| session(run).is_some());
+    let sessions = days::sessions(known.runs);
+    let has_session = sessions.is_some();
     let is_written = [true, true, true, has_order, has_session];
     let mut rows = vec![["run", "condition", "repeat", "order", "session"].map(str::to_owned)];
     let mut counts: Vec<(&str, i64)> = Vec::new();
-    for run in known.runs {
+    for (place, run) in known.runs.iter().enumerate() {
         let at = counts.iter().position(|(id, _)| *id == run.condition).unwrap_or_else(|| {
             counts.push((&run.condition, 0));
             counts.len() - 1
@@ -193,7 +194,7 @@ fn runs(known: &Known<'_>) -> String {
         counts[at].1 += 1;
         let repeat = label(run, "repeat").unwrap_or(counts[at].1).to_string();
         let order = label(run, "order").map_or(String::new(), |order| order.to_string());
-        let session = session(run).unwrap_or_default().to_owned();
+        let session = sessions.as_ref().map_or(String::new(), |all| all[place].clone());
         rows.push([run.name.clone(), run.condition.clone(), repeat, order, session]);
     }
     let written = |row: &[String; 5]| -> Vec<String> {
@@ -201,12 +202,6 @@ fn runs(known: &Known<'_>) -> String {
     };
     text.push_str(&table(rows.iter().map(written)));
     text
-}
-
-/// The day or pouring of a run, by its name or a column.
-fn session(run: &Run) -> Option<&str> {
-    let known = |name: &String| OF_SESSION.contains(&name.as_str());
-    run.labels.iter().find(|(name, _)| known(name)).map(|(_, value)| value.as_str())
 }
 
 fn label(run: &Run, key: &str) -> Option<i64> {
