@@ -210,3 +210,31 @@ fn angles_of_oblique_drops_have_the_error_of_one_launch_and_no_common_one() {
     assert!((0.4..1.6).contains(&sigma), "{sigma}");
     assert_eq!(loaded.instrument.angle_bias_sigma_deg.map(f64::to_bits), Some(0));
 }
+
+#[test]
+fn dates_in_names_are_sessions_and_no_conditions() {
+    let here = tempfile::tempdir().expect("a folder");
+    let mut paths = Vec::new();
+    for (at, (height, day)) in
+        [(0.1, "2024-05-06"), (0.1, "2024-05-07"), (0.2, "2024-05-06"), (0.2, "2024-05-07")]
+            .into_iter()
+            .enumerate()
+    {
+        let one = drop_into(Meets::Whole, height, Camera { seed: at as u64, ..Camera::USUAL });
+        let mut text = String::from("t (s),z (mm)\n");
+        for (t, z) in &one.readings {
+            let _ = writeln!(text, "{t:.5},{:.3}", 1e3 * z);
+        }
+        let path = here.path().join(format!("h{:02.0}_{day}_r{}.csv", 1e2 * height, at % 2));
+        fs::write(&path, text).expect("a table");
+        paths.push(path);
+    }
+    let out = here.path().join("set");
+    let set = imported(&paths, &ball(), &out);
+    assert!(set.notes.iter().any(|note| note == "Sessions: by the 2 dates in the names of runs."));
+    let loaded = MeasurementSet::load(&out).unwrap_or_else(|error| panic!("{error}")).set;
+    assert_eq!(loaded.conditions.len(), 2, "one per height");
+    let days: Vec<Option<&str>> = loaded.runs.iter().map(|run| run.session.as_deref()).collect();
+    let [first, second] = ["2024-05-06", "2024-05-07"].map(Some);
+    assert_eq!(days, [first, second, first, second]);
+}
