@@ -70,7 +70,7 @@ pub enum NoiseSource {
     /// Errors that the set states.
     Stated,
     /// Readings as the set states them, and a run-to-run scatter that is assumed as in
-    /// [`Noise::assumed_scatter`], since nothing was repeated.
+    /// `assumed_scatter`, since nothing was repeated.
     #[serde(rename = "assumed")]
     AssumedScatter,
     /// Nothing: 5 % of every number, so that a fit has weights. No test is made on it.

@@ -61,7 +61,7 @@ impl Weight {
         Some(Self { factor, shift, between, angle })
     }
 
-    /// What the mean scatters by together with all its runs, as [`Noise::between_conditions`] has it.
+    /// What the mean scatters by together with all its runs, as `Noise::between_conditions` has it.
     #[must_use]
     pub fn between(&self) -> Option<&DMatrix<f64>> {
         self.between.as_ref()
@@ -84,7 +84,7 @@ impl Weight {
         white
     }
 
-    /// The vector that [`Weight::whiten`] makes `white` of.
+    /// The vector that `whiten` makes `white` of.
     #[must_use]
     pub fn colour(&self, white: &DVector<f64>) -> DVector<f64> {
         self.factor.l() * white

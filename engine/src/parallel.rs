@@ -1,6 +1,6 @@
 //! How work is split over threads: by the data, never by the number of threads.
 //!
-//! The unit of work, of dispatch and of every sum is a block of [`BLOCK`] consecutive grains. Each
+//! The unit of work, of dispatch and of every sum is a block of `BLOCK` consecutive grains. Each
 //! block adds up its own part in order, and the parts are added in block order on one thread, so the
 //! same run has the same bits on any number of threads.
 

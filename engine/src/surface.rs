@@ -95,14 +95,14 @@ impl Placement {
     /// A world point in the body frame at the end of the step.
     #[inline]
     #[must_use]
-    pub(crate) fn to_body(&self, point: Vec3) -> Vec3 {
+    pub(crate) fn to_body(self, point: Vec3) -> Vec3 {
         self.orientation.inverse_transform_vector(&(point - self.position))
     }
 
     /// A world point in the body frame half a step earlier.
     #[inline]
     #[must_use]
-    pub(crate) fn to_body_half(&self, point: Vec3) -> Vec3 {
+    pub(crate) fn to_body_half(self, point: Vec3) -> Vec3 {
         self.orientation_half.inverse_transform_vector(&(point - self.position_half))
     }
 

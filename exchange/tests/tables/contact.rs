@@ -192,7 +192,7 @@ fn angles_of_oblique_drops_have_the_error_of_one_launch_and_no_common_one() {
         for (t, z) in &one.readings {
             let flown = (t - camera.hold).clamp(0.0, one.contact - camera.hold);
             let slid = (t - one.contact).max(0.0);
-            let x = faster * forward * (flown + 0.02 * (1.0 - (-slid / 0.02).exp()));
+            let x = faster * forward * (flown + 0.02 * (1.0 - libm::exp(-slid / 0.02)));
             let _ = writeln!(text, "{t:.5},{:.3},{:.3}", 1e3 * z, 1e3 * x);
         }
         let path = here.path().join(format!("oblique_{repeat}.csv"));
@@ -202,7 +202,7 @@ fn angles_of_oblique_drops_have_the_error_of_one_launch_and_no_common_one() {
     let out = here.path().join("set");
     imported(&paths, &ball(), &out);
     let loaded = MeasurementSet::load(&out).unwrap_or_else(|error| panic!("{error}")).set;
-    let true_angle = (2.0 * 9.81 * height).sqrt().atan2(forward).to_degrees();
+    let true_angle = libm::atan2((2.0 * 9.81 * height).sqrt(), forward).to_degrees();
     let angle = loaded.conditions[0].angle_deg;
     assert_eq!(loaded.conditions.len(), 1);
     assert!((angle - true_angle).abs() < 1.0, "{angle}, {true_angle}");
