@@ -3,7 +3,7 @@
 use super::names::OF_SESSION;
 use super::run::Run;
 
-/// What each run is of, if all say it and they are of two at least.
+/// What each run is of, if all say it.
 pub(super) fn sessions(runs: &[Run]) -> Option<Vec<String>> {
     labels(runs).or_else(|| days(runs))
 }
