@@ -65,7 +65,7 @@ pub(super) fn check(set: &MeasurementSet, (places, columns): Written<'_>, findin
 fn mirrored(set: &MeasurementSet) -> Option<(usize, String)> {
     let way = |run: &Run| {
         let condition = &set.conditions[run.condition];
-        let is_oblique = cosine(condition) > STEEPEST;
+        let is_oblique = cosine(condition) > CLEARLY_OBLIQUE;
         travel(run, |frame| frame.x)
             .filter(|way| is_oblique && way.abs() >= SHORTEST * condition.diameter)
     };
@@ -138,8 +138,11 @@ fn check_angles(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut
     );
 }
 
-/// Cosine of the steepest angle of an impact that goes forward clearly.
+/// Cosine of the steepest angle of impacts that go forward in most runs.
 const STEEPEST: f64 = 0.05;
+
+/// The same of impacts that go forward in every run, however the bed scatters them: 80 degrees.
+const CLEARLY_OBLIQUE: f64 = 0.17;
 
 /// Most runs, or conditions whose angles a message lists.
 const LISTED: usize = 4;
