@@ -372,13 +372,13 @@ fn as_json(law: &Described) -> Value {
         object["shows_with"] = json!(law.shows_with);
     }
     if !law.confounders.is_empty() {
-        let told_apart: Vec<Value> = law.confounders.iter().map(twin_json).collect();
+        let told_apart: Vec<Value> = law.confounders.iter().map(confounder_json).collect();
         object["told_apart"] = json!(told_apart);
     }
     object
 }
 
-fn twin_json(confounder: &Confounder) -> Value {
+fn confounder_json(confounder: &Confounder) -> Value {
     let by: Vec<&str> = confounder.any_of.iter().map(|need| need.describe()).collect();
     json!({ "from": confounder.effect, "by_any_of": by })
 }

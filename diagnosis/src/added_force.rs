@@ -34,7 +34,7 @@ pub struct AddedForce {
 }
 
 impl AddedForce {
-    /// Whether it takes away more work than the bed does with it: then a fit has two large forces cancel each other.
+    /// Whether the effect removes more work than the whole force does. Such a fit makes two large forces cancel each other.
     pub(crate) fn is_cancelled(&self) -> bool {
         match self.size {
             Size::AtAMoment { share_of_work, .. } => share_of_work < -1.0,

@@ -67,8 +67,8 @@ impl Errors {
 /// Standard deviations of one run by which a number has to differ from zero for an error relative to it.
 const FROM_ZERO: f64 = 3.0;
 
-/// Share of the final depth below which a range is that of a vertical impact: the scatter of few repeats may be zero by
-/// chance.
+/// A range below this share of the final depth counts as zero. The scatter of two repeats alone does not tell, since it can
+/// be zero by chance.
 const LEAST_RANGE: f64 = 0.05;
 
 /// Sums of squares by kind.

@@ -28,7 +28,7 @@ pub struct HeldOut {
     /// What means of so many runs would miss the truth by.
     #[serde(serialize_with = "six_digits_or_null")]
     pub noise_floor: Option<f64>,
-    /// What the right model would miss it by: the noise of the means, and what the fit leaves unknown.
+    /// The error that the true model would have: the noise of the means and the uncertainty of the fitted parameters.
     #[serde(skip)]
     pub(crate) expected: Option<f64>,
     /// Share of what exceeds the noise that is explained: (before² − after²)/(before² − noise²); none where nothing does.

@@ -1,6 +1,7 @@
-//! Readings along a path: which of them are kept, and how well the runs know them.
+//! Readings along a path: a choice of them, and their stated errors.
 
-/// The places of `count` of `n` readings, evenly spaced, first and last among them; the middle one where one is wanted.
+/// The indices of at most `count` of `n` readings. They are evenly spaced and include the first and the last. A `count` of
+/// one gives the middle reading.
 pub(crate) fn evenly(n: usize, count: usize) -> Vec<usize> {
     match count {
         _ if n <= count => (0..n).collect(),
@@ -10,8 +11,8 @@ pub(crate) fn evenly(n: usize, count: usize) -> Vec<usize> {
     }
 }
 
-/// Root mean square of what the runs state for the reading nearest to `place`, if all state it. A reading is its place and
-/// its standard deviation.
+/// Root mean square of the stated errors of the readings nearest to `place`, one reading per run. A reading is a pair of
+/// place and standard deviation. `None` if one of these readings states no error.
 pub(crate) fn stated_sigma<R>(runs: impl Iterator<Item = R>, place: f64) -> Option<f64>
 where
     R: Iterator<Item = (f64, Option<f64>)>,

@@ -53,7 +53,8 @@ pub(crate) const CONE: ShapeEntry = ShapeEntry {
     assembly,
 };
 
-/// Section of an endless cone of this full apex angle (rad) over that of its diameter, so many diameters above its tip.
+/// Cross-section of an infinite cone at `depth` diameters above its tip, relative to that of the diameter; full apex angle in
+/// rad.
 fn of_cone(depth: f64, apex: f64) -> f64 {
     (2.0 * depth * libm::tan(0.5 * apex)).powi(2)
 }

@@ -39,7 +39,7 @@ pub(crate) fn of_sphere(depth: f64) -> f64 {
     if depth < 0.5 { spherical(depth) } else { 1.0 }
 }
 
-/// For shapes whose centre no camera tracks.
+/// The centre of a shape without a tracked centre.
 pub(crate) fn no_centre(_: f64, _: Option<f64>) -> Option<f64> {
     None
 }

@@ -1,4 +1,4 @@
-//! What a set states and its own readings deny: gravity, the floor of the bed, errors of readings, which scalar is which.
+//! Statements of a set that its own readings contradict: gravity, depth of the bed, reading errors, names of scalars.
 
 use configs::{Diagnostic, shorten};
 
@@ -9,29 +9,29 @@ use super::median::median;
 use super::reading::Reading;
 use super::{Condition, MeasurementSet, Run};
 
-/// Gravity where most laboratories are (m/s²), and the share by which a fall may differ from it and be one there.
+/// Gravity on Earth (m/s²), and the largest relative difference of a free fall on Earth from it.
 const EARTH: f64 = 9.81;
 const OF_EARTH: f64 = 0.1;
 
-/// Standard error of the mean fall, in gravity of the Earth, up to which it says where it is.
+/// Largest standard error of the mean acceleration of the fall, in units of gravity on Earth, for a comparison with gravity.
 const KNOWN: f64 = 0.05;
 
-/// Ratio of gravity to the fall from which they are not of one place.
+/// Smallest ratio between stated gravity and measured acceleration that is a contradiction.
 const ELSEWHERE: f64 = 1.5;
 
-/// Share of the depth of a bed by which readings may go below its floor.
+/// Tolerance of readings below the floor, relative to the depth of the bed.
 const BELOW_FLOOR: f64 = 0.05;
 
-/// Share of the depth from which an error of readings leaves nothing to see.
+/// Reading error, relative to the depth, above which a set shows nothing.
 const TOO_LARGE: f64 = 0.2;
 
-/// Root mean square of logarithms from which scalars are not what the readings say.
+/// Root mean square of the logarithms of stated over read scalars, above which they disagree.
 const OFF: f64 = 0.2;
 
-/// Fewest runs that tell.
+/// Fewest runs for a comparison of scalars.
 const FEWEST: usize = 3;
 
-/// Refuses what the readings deny, and warns of errors that they do not have.
+/// Refuses statements that the readings contradict. Warns of implausible errors and of missing sizes.
 pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
     check_gravity(set, findings);
     check_floor(set, places, findings);
@@ -40,7 +40,7 @@ pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: 
     check_sizes(set, places, findings);
 }
 
-/// Refuses gravity of another place than that where the bodies fall.
+/// Refuses a stated gravity that differs from the acceleration before contact.
 fn check_gravity(set: &MeasurementSet, findings: &mut Findings) {
     let fall = |run: &Run| {
         let fall = Fall::of_frames(&run.frames)?.acceleration;
@@ -65,7 +65,7 @@ fn check_gravity(set: &MeasurementSet, findings: &mut Findings) {
     }
 }
 
-/// Refuses bodies below the floor.
+/// Refuses paths that go below the floor of the bed.
 fn check_floor(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
     let deepest = |run: &Run| {
         let frames = run.frames.iter().map(|frame| frame.z);
@@ -92,7 +92,7 @@ fn check_floor(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
     }
 }
 
-/// Refuses stopping times in the place of final depths.
+/// Refuses exchanged stopping times and final depths.
 fn check_scalars(set: &MeasurementSet, findings: &mut Findings) {
     let of = |run: &Run| {
         let deepest = run.frames.iter().max_by(|a, b| a.z.total_cmp(&b.z))?;
@@ -116,7 +116,7 @@ fn check_scalars(set: &MeasurementSet, findings: &mut Findings) {
     }
 }
 
-/// Warns of stated errors of readings that are as large as what is read.
+/// Warns of stated reading errors that are comparable to the depths.
 fn check_errors(set: &MeasurementSet, findings: &mut Findings) {
     let of = |run: &Run| {
         let stated = median(run.frames.iter().filter_map(|frame| frame.sigma));

@@ -269,7 +269,7 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// The same with the errors that runs share where they are stated, and exact where they are not.
+    /// The same, where an unstated shared error is zero.
     #[must_use]
     pub fn with_stated_errors_alone(self) -> Self {
         let exact = |stated: Option<f64>| stated.or(Some(0.0));

@@ -31,10 +31,10 @@ const LARGEST: f64 = 10.0;
 const NEAR: f64 = 1.7;
 /// Bulk density (kg/m³) below which a bed is of no known grains; of aerogel and foam beads it is 10 or more.
 const LIGHTEST: f64 = 8.0;
-/// Least and greatest step between readings, in those of the camera: frames may be left out, and none are added.
+/// Range of the step between readings, in frames of the camera. A table can leave frames out, and cannot add any.
 const STEPS: RangeInclusive<f64> = 0.8..=3.0;
 
-/// Ratio of rates from which one is in another unit.
+/// Ratio of two rates above which a wrong unit is likely.
 const RATE_OF_A_UNIT: f64 = 5.0;
 
 /// Factors between units of length that are taken for each other.

@@ -60,8 +60,8 @@ pub(super) fn check(set: &MeasurementSet, (places, columns): Written<'_>, findin
     check_angles(set, places, findings);
 }
 
-/// Names of the runs that go backwards from the start on, nearly as far as the runs of their condition usually go, and the
-/// condition of the first.
+/// The runs that move backwards from the start, about as far as the other runs of their condition move forward: the index of
+/// the first condition, and the names of the runs.
 fn mirrored(set: &MeasurementSet) -> Option<(usize, String)> {
     let way = |run: &Run| {
         let condition = &set.conditions[run.condition];
@@ -138,10 +138,10 @@ fn check_angles(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut
     );
 }
 
-/// Cosine of the steepest angle of impacts that go forward in most runs.
+/// Cosine of the steepest angle at which most runs move forward.
 const STEEPEST: f64 = 0.05;
 
-/// The same of impacts that go forward in every run, however the bed scatters them: 80 degrees.
+/// Cosine of the steepest angle at which every run moves forward, whatever the scatter of the bed (80 degrees).
 const CLEARLY_OBLIQUE: f64 = 0.17;
 
 /// Most runs, or conditions whose angles a message lists.

@@ -1,4 +1,4 @@
-//! Sizes of the body of a condition, as its shape asks for them.
+//! Sizes of the body of a condition, by the parameters of its shape.
 
 use engine::params::{Default, ParamTable};
 use intruders::ShapeEntry;

@@ -118,7 +118,7 @@ impl Wish {
         }
     }
 
-    /// Whether `bed_candidate` is wanted, as a parameter or as a candidate.
+    /// Whether the plan covers `bed_candidate`, either as a free parameter or as a ranked candidate.
     fn takes(&self, bed_candidate: &BedCandidate) -> bool {
         self.considers(bed_candidate.id, bed_candidate.of_measurements)
             || self.free.iter().any(|id| id == bed_candidate.id)
@@ -178,7 +178,7 @@ pub(super) struct Draws {
 }
 
 impl Plan {
-    /// The largest plan for `bed_model` that is done in the budget of `wish`, or the standard one; the smallest, if
+    /// The largest plan for `bed_model` that fits the budget of `wish`, or the standard plan; the smallest, if
     /// none is, which [`Plan::fits`] then denies.
     ///
     /// # Errors
@@ -383,7 +383,7 @@ impl Plan {
     }
 }
 
-/// The candidates of `bed_model`. One with which the step of the model would be too long is none.
+/// The candidates of `bed_model`. A change that makes the time step of the model too long is left out.
 fn bed_candidates<'a>(
     bed_model: &'a BedModel<'_>,
 ) -> impl Iterator<Item = &'static BedCandidate> + use<'a> {
@@ -399,7 +399,7 @@ fn bed_candidates<'a>(
     BED_CANDIDATES.iter().filter(is_open).filter(is_sound)
 }
 
-/// `count` of `conditions`, evenly spaced, first and last among them.
+/// At most `count` of `conditions`, evenly spaced, with the first and the last.
 fn spread_over(conditions: &[usize], count: usize) -> Vec<usize> {
     evenly(conditions.len(), count).into_iter().map(|at| conditions[at]).collect()
 }

@@ -1,4 +1,4 @@
-//! Conditions as fits predict them that have not seen them.
+//! Predictions of conditions that were not fitted to.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use serde::Serialize;
@@ -37,7 +37,7 @@ const ALONE: f64 = 1e-8;
 /// A Gauss-Newton step that leaves so many times more of a condition than the fit to all is taken for one too far.
 const FAR: f64 = 2.0;
 
-/// Standard errors of a prediction, in those of the noise, from which a miss of it says nothing.
+/// Largest standard error of a prediction, in units of the noise. The error of a less certain prediction says nothing.
 const OPEN: f64 = 5.0;
 
 /// A condition with both predictions of it.
@@ -76,7 +76,7 @@ pub(super) struct Predicted {
     pub(super) error: DVector<f64>,
     /// Logarithm of the predictive density, up to a constant of the measurements.
     pub(super) log_density: f64,
-    /// Mean variance of the prediction by what is unknown of the parameters, over that of the noise.
+    /// Mean variance of the prediction due to the uncertainty of the parameters, in units of the variance of the noise.
     pub(super) open: f64,
 }
 
@@ -112,7 +112,7 @@ impl Predicted {
     }
 
     /// Every condition that was fitted to, by one Gauss-Newton step without it from the fit of
-    /// `fitted`, under the noise of `noisy`, or by a fit where that step goes far; none that alone fixes what it is predicted by.
+    /// `fitted`, under the noise of `noisy`, or by a fit where that step goes far. A condition that the others do not determine is not predicted.
     pub(super) fn left_out(
         problem: &FitProblem<'_>,
         noisy: &Fitted,

@@ -1,14 +1,14 @@
-//! The day or pouring of a run, by a column, by a field of its name, or by a date in its name.
+//! Sessions of runs, from a column, a field of the name, or a date in the name.
 
 use super::names::OF_SESSION;
 use super::run::Run;
 
-/// What each run is of, if all say it.
+/// The session of each run. `None` if a run has none.
 pub(super) fn sessions(runs: &[Run]) -> Option<Vec<String>> {
     labels(runs).or_else(|| days(runs))
 }
 
-/// A note where dates in names make sessions.
+/// A note that sessions come from dates in names.
 pub(super) fn told(runs: &[Run]) -> Option<String> {
     let mut days = days(runs).filter(|_| labels(runs).is_none())?;
     days.sort();
@@ -25,13 +25,13 @@ fn labelled(run: &Run) -> Option<&str> {
     run.labels.iter().find(|(name, _)| known(name)).map(|(_, value)| value.as_str())
 }
 
-/// The dates in the names of the runs, if all have one and they differ.
+/// The date in the name of each run. `None` if a name has no date, or if all dates are the same.
 fn days(runs: &[Run]) -> Option<Vec<String>> {
     let all: Option<Vec<String>> = runs.iter().map(|run| date_in(&run.name)).collect();
     all.filter(|all| all.iter().any(|one| *one != all[0]))
 }
 
-/// A date in `name`, as `2024-05-06`, `2024_05_06`, `20240506` or `06.05.2024`, year first.
+/// The date in `name`, written year first. It reads `2024-05-06`, `2024_05_06`, `20240506` and `06.05.2024`.
 fn date_in(name: &str) -> Option<String> {
     let numbers: Vec<&str> = name.split(|c: char| !c.is_ascii_digit()).collect();
     let is_year =

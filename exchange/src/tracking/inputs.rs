@@ -11,7 +11,8 @@ use super::{spreadsheet, text};
 /// Most bytes of one table.
 const MOST: u64 = 512_000_000;
 
-/// The files that `paths` mean but `bodies`, sorted within a pattern or folder, each once.
+/// The files that `paths` name, without the table of bodies. Files of one pattern or folder are sorted, and no file is listed
+/// twice.
 ///
 /// # Errors
 /// If a pattern fits nothing or a folder holds no table.
@@ -47,13 +48,13 @@ const TABLES: [&str; 7] = ["csv", "tsv", "txt", "dat", "lvm", "tab", "itx"];
 /// How deep folders are searched.
 const DEPTH: usize = 3;
 
-/// Whether a path is another than `bodies`.
+/// A test whether a path is a different file from `bodies`.
 fn is_not(bodies: Option<&Path>) -> impl Fn(&Path) -> bool {
     let bodies = bodies.and_then(|path| std::fs::canonicalize(path).ok());
     move |path| bodies.is_none() || std::fs::canonicalize(path).ok() != bodies
 }
 
-/// The tables but `bodies` in a folder, or where there is none in the folders within it, sorted.
+/// The tables in a folder, sorted, without the table of bodies. If the folder itself holds none, its subfolders are searched.
 ///
 /// # Errors
 /// If the folder cannot be read or holds no table.
@@ -153,10 +154,10 @@ const PROJECTS: [(&str, &str); 8] = [
     ("pxp", "Igor"),
 ];
 
-/// Most lines of a table: as many readings as a set may have.
+/// The largest number of lines in a table; a set holds no more readings.
 const MOST_LINES: usize = measurements::MOST_READINGS;
 
-/// Refuses a table of too many lines, before it is read.
+/// Refuses a table with too many lines before parsing it.
 fn refuse_long(file: &str, bytes: &[u8]) -> Result<(), Fault> {
     let lines = bytes.iter().filter(|byte| **byte == b'\n').count();
     match lines > MOST_LINES {

@@ -59,10 +59,10 @@ pub(super) enum Level {
     Own(f64),
 }
 
-/// Chi-squared by which one level of all runs is the better for one tracked point of bodies than for another.
+/// Difference of chi-squared that decides between two tracked points.
 const CLEARLY: f64 = 9.0;
 
-/// Least difference (m) between bodies by which the point that was tracked matters.
+/// Smallest difference (m) between bodies for which the tracked point matters.
 const UNLIKE: f64 = 1e-4;
 
 /// The contacts of runs under `gravity` (m/s²), `tracked` at this point of their bodies.
@@ -115,7 +115,7 @@ impl Seen {
     }
 }
 
-/// How the lowest points of `runs` depart, which were `tracked` there.
+/// The departures of the lowest points of `runs` from free fall, given the `tracked` point.
 fn of_the_lowest_point(runs: &[Seen], tracked: Tracked) -> Vec<Departure> {
     runs.iter().map(|run| run.departure.below(run.depth_of(tracked))).collect()
 }
@@ -129,8 +129,8 @@ pub(super) fn depends_on_the_point(runs: &[Seen]) -> bool {
         && runs.iter().all(|run| run.stated.is_none())
 }
 
-/// The point of bodies of several sizes that was tracked, if only by this one the surface has one level; `None` where levels
-/// do not tell.
+/// The tracked point for which all runs share one level of the surface. `None` if bodies have one size, or if both points fit
+/// about equally well.
 pub(super) fn tracked_point(runs: &[Seen]) -> Option<Tracked> {
     if !depends_on_the_point(runs) {
         return None;

@@ -133,10 +133,13 @@ mod tests {
     }
 
     #[test]
-    fn every_twin_is_another_effect_and_can_be_told_apart_by_something() {
+    fn every_confounder_is_another_effect_and_some_data_tell_the_two_apart() {
         for (name, confounder) in declared() {
             let entry = find_resistance(confounder.effect).unwrap_or_else(|| {
-                panic!("{name} has the twin {}, which is none", confounder.effect)
+                panic!(
+                    "{name} lists the confounder {}, which is not a registered effect",
+                    confounder.effect
+                )
             });
             assert!(matches!(entry.role, Role::Effect(_)), "{name}: {}", confounder.effect);
             assert_ne!(name, confounder.effect);
@@ -145,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_of_twins_is_declared_once_and_known_to_both() {
+    fn a_pair_of_confounders_is_declared_once_and_known_to_both() {
         let pairs = declared();
         for (index, (name, confounder)) in pairs.iter().enumerate() {
             let same = |(other, its): &&(&str, Confounder)| {
@@ -161,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_tells_twins_apart_reads_as_a_sentence() {
+    fn what_tells_confounders_apart_reads_as_a_sentence() {
         let confounder = Confounder {
             effect: "lift",
             any_of: &[Needs::ObliqueAngles, Needs::FramesBeforeImpact],

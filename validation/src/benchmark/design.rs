@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_full_design_holds_what_tells_every_effect_from_its_twins() {
+    fn the_full_design_holds_what_tells_every_effect_from_its_confounders() {
         let design = Design::full();
         let fitted = &design.settings[..design.settings.len() - design.held_out];
         let distinct = |of: fn(&Setting) -> f64| {

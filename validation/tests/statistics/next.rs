@@ -49,8 +49,9 @@ fn left_open(
     };
     let open = verdicts.iter().position(is_open);
     let said = || verdicts.each_ref().map(|found| (found.verdict, &found.unexplained.hint));
-    let open =
-        open.unwrap_or_else(|| panic!("one drop at one angle tells all twins apart: {:?}", said()));
+    let open = open.unwrap_or_else(|| {
+        panic!("one drop at one angle tells all confounders apart: {:?}", said())
+    });
     sets[open].clone()
 }
 
