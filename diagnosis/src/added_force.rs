@@ -156,3 +156,23 @@ fn greatest_force(
         speed: most.speed,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_force_that_removes_more_work_than_is_left_is_cancelled() {
+        let with = |share_of_work| AddedForce {
+            size: Size::AtAMoment { greatest: -1.0, share_of_work },
+            of: 1.0,
+            condition: String::new(),
+            depth: 0.01,
+            speed: 1.0,
+        };
+        assert!(with(-1.1).is_cancelled());
+        assert!(!with(-0.9).is_cancelled() && !with(3.0).is_cancelled());
+        let of_a_bed = AddedForce { size: Size::OnTheWayDown { mean: -5.0 }, ..with(0.0) };
+        assert!(!of_a_bed.is_cancelled(), "its work is not known");
+    }
+}

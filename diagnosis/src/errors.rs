@@ -110,3 +110,27 @@ impl Sums {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observed::Observed;
+    use crate::test_sets::{condition, scalar_run, set};
+    use measurements::Kind;
+
+    #[test]
+    fn a_range_that_is_small_beside_the_depth_has_no_relative_error() {
+        // Two repeats whose ranges agree by chance, and a prediction of no range.
+        let relative = |range: f64| {
+            let run = |range| scalar_run(0, [None, Some(0.02), Some(range)]);
+            let runs = vec![run(range), run(1.01 * range)];
+            let observed = Observed::of(&set(Kind::Scalar, vec![condition(1.0, 90.0)], runs));
+            let one = &observed.conditions[0];
+            let mut sums = Sums::default();
+            sums.add(one, &DVector::from_vec(vec![0.001, one.mean[1]]));
+            sums.errors().relative.expect("the depth has one")
+        };
+        assert!((relative(7e-5) - 0.05).abs() < 1e-9, "that of the depth alone");
+        assert!((relative(0.01) - f64::sqrt(0.5 * (0.05 * 0.05 + 1.0))).abs() < 1e-9);
+    }
+}

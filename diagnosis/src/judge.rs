@@ -265,15 +265,23 @@ impl Judge<'_> {
         if let Some(hint) = self.needs_an_implausible_apparatus(&self.leader) {
             return self.refuse(Grounds { hint, ..grounds });
         }
-        if let Some(hint) = self.takes_away_too_much()? {
-            return self.refuse(Grounds { hint, ..grounds });
-        }
         let held_out = Some(held_out);
         if let Some(hint) = held_out.as_ref().and_then(|held_out| self.too_small(held_out)) {
             let grounds = Grounds { hint, held_out, ..grounds };
             return self.diagnosis(Verdict::BelowNoise, &self.baseline, grounds);
         }
-        self.diagnosis(self.of_the_best(), &self.leader, Grounds { held_out, ..grounds })
+        let (p_lof, p_lof_with) = (grounds.p_lof, grounds.p_lof_with);
+        let grounds = Grounds { held_out, ..grounds };
+        let found = self.diagnosis(self.of_the_best(), &self.leader, grounds)?;
+        let mut forces = found.amplitudes.iter().filter_map(|one| one.force.as_ref());
+        if forces.any(AddedForce::is_cancelled) {
+            let leader = found.effects.join(" and ");
+            let hint = format!(
+                "{leader} explains the data only if it takes away more resistance than it leaves"
+            );
+            return self.refuse(Grounds { p_lof, p_lof_with, hint, held_out: None });
+        }
+        Ok(found)
     }
 
     /// That the effects of `fitted` explain the data only with an error of the apparatus that nobody's has, in a sentence.
@@ -291,17 +299,6 @@ impl Judge<'_> {
             effects.collect::<Vec<_>>().join(" and "),
             error.id
         ))
-    }
-
-    /// That the best effect takes away more resistance than it leaves, in a sentence.
-    fn takes_away_too_much(&self) -> Result<Option<String>, FitError> {
-        let listed = as_listed(self.problem, &self.leader)?;
-        let forces = added_forces(self.problem, &listed);
-        let is_cancelled = forces.iter().flatten().any(AddedForce::is_cancelled);
-        let name = self.name(self.ranking.scores[0].candidate());
-        Ok(is_cancelled.then(|| {
-            format!("{name} explains the data only if it takes away more resistance than it leaves")
-        }))
     }
 
     /// The two effects that explain the data, if there are two; where one does (`is_explained`), two have to be far more

@@ -1,4 +1,4 @@
-//! The acceleration before contact, against gravity.
+//! Tables that disagree with the others: their acceleration before contact, their axis, the height in their name.
 
 use measurements::{Reading, median};
 
@@ -7,29 +7,29 @@ use super::motion::Path;
 use super::run::Run;
 use super::settings::Settings;
 
-/// Least difference from gravity that is told, relative, and in standard errors.
+/// Smallest difference from gravity that brings a warning: relative, and in standard errors.
 const CLEAR: (f64, f64) = (0.04, 4.0);
 
-/// Median of the size of a normal number of variance 1.
+/// Median of the absolute value of a standard normal number.
 const MIDDLE: f64 = 0.6745;
 
-/// Most runs that are named.
+/// Largest number of runs that a warning names.
 const LISTED: usize = 4;
 
-/// A warning if bodies, or those of some runs, clearly fall otherwise than under gravity.
+/// A warning if the acceleration before contact differs clearly from gravity, in all runs together or in some of them.
 pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
     let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
     let mut falls: Vec<(&str, Reading)> = Vec::new();
     for (path, one) in paths.iter().zip(begun) {
         let scales = path.scales(&paths, settings).ok()?;
-        // A run that shows no fall says nothing against the others.
+        // The other runs are judged even if one shows no fall.
         let fall = scales.fall(path).filter(|fall| fall.se > 0.0 && fall.se.is_finite());
         falls.extend(fall.map(|fall| (one.name.as_str(), fall)));
     }
     let weight = |fall: &Reading| fall.se.powi(-2);
     let weights: f64 = falls.iter().map(|(_, fall)| weight(fall)).sum();
     let mean = falls.iter().map(|(_, fall)| weight(fall) * fall.value).sum::<f64>() / weights;
-    // Clocks that are not even scatter the accelerations by more than their errors.
+    // An uneven clock scatters the accelerations by more than their errors.
     let misfit: f64 =
         falls.iter().map(|(_, fall)| weight(fall) * (fall.value - mean).powi(2)).sum();
     let excess = (misfit / (falls.len() as f64 - 1.0).max(1.0)).max(1.0);
@@ -47,29 +47,24 @@ pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<St
     let scatter =
         median(falls.iter().map(|(_, fall)| (fall.value - usual).abs() / fall.se))? / MIDDLE;
     let own = |fall: &Reading| Reading { se: fall.se * scatter.max(1.0), ..*fall };
-    let off: Vec<&(&str, Reading)> =
-        falls.iter().filter(|(_, fall)| is_off(own(fall), gravity)).collect();
-    let named = off.iter().take(LISTED).map(|(name, fall)| format!("{name} ({:.2})", fall.value));
-    let named = named.collect::<Vec<_>>().join(", ");
-    let more = match off.len().saturating_sub(LISTED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
+    let off = falls.iter().filter(|(_, fall)| is_off(own(fall), gravity));
+    let off: Vec<String> = off.map(|(name, fall)| format!("{name} ({:.2})", fall.value)).collect();
     (!off.is_empty()).then(|| {
+        let named = listed(&off);
         format!(
-            "Warning: before contact the bodies of {named}{more} fall otherwise than at {gravity} m/s^2, as the others do: {question}"
+            "Warning: before contact the bodies of {named} fall otherwise than at {gravity} m/s^2, as the others do: {question}"
         )
     })
 }
 
-/// Fewest runs and heights by which names and speeds are compared.
+/// Fewest runs, and fewest heights, for a comparison of names with speeds.
 const FEWEST: (usize, usize) = (5, 3);
 
-/// Relative differences of heights that are one height, and that are two.
+/// Heights are equal up to the first relative difference, and different from the second on.
 const SAME: f64 = 0.15;
 const OTHER: f64 = 0.3;
 
-/// A warning if `runs` are named by heights, as `h050`, and some do not come as fast as from theirs.
+/// A warning if names of `runs` state heights, as `h050` does, and some speeds contradict them.
 pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
     let of = |run: &Run| {
         let named = height_in(&run.name)?;
@@ -83,7 +78,7 @@ pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
     if all.len() < FEWEST.0 || all.len() < runs.len() || heights.len() < FEWEST.1 {
         return None;
     }
-    // Of what unit the numbers are does not matter.
+    // The ratio of most runs is the unit of the numbers in the names.
     let unit = median(all.iter().map(|one| one.2))?;
     let off = |one: &(String, f64, f64)| (one.2 / unit - 1.0).abs();
     let as_named = all.iter().filter(|one| off(one) < SAME).count();
@@ -91,22 +86,17 @@ pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
     if 3 * as_named < all.len() || as_named + others.len() < all.len() || others.is_empty() {
         return None;
     }
-    let named = others
-        .iter()
-        .take(LISTED)
-        .map(|(name, height, ratio)| format!("{name} (from {:.0})", height * ratio / unit));
-    let named = named.collect::<Vec<_>>().join(", ");
-    let more = match others.len().saturating_sub(LISTED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
+    let fallen = |(name, height, ratio): &&(String, f64, f64)| {
+        format!("{name} (from {:.0})", height * ratio / unit)
     };
+    let named = listed(&others.iter().map(fallen).collect::<Vec<_>>());
     Some(format!(
-        "Warning: by their speeds these do not fall from the heights in their names, as the others do: {named}{more}. Are names \
+        "Warning: by their speeds these do not fall from the heights in their names, as the others do: {named}. Are names \
          exchanged?"
     ))
 }
 
-/// The number behind an `h` that stands alone in `name`.
+/// The number in a word of `name` that consists of `h` and digits.
 fn height_in(name: &str) -> Option<f64> {
     let words = name.split(|c: char| !c.is_alphanumeric() && c != '.');
     let mut heights = words.filter_map(|word| {
@@ -117,7 +107,7 @@ fn height_in(name: &str) -> Option<f64> {
     heights.next()
 }
 
-/// A warning if the axis counts the other way in a few tables than in most.
+/// A warning if the axis of a few tables counts in the other direction than that of most tables.
 pub(super) fn of_axes(begun: &[Begun]) -> Option<String> {
     let (upward, downward): (Vec<&Begun>, Vec<&Begun>) =
         begun.iter().partition(|one| one.path.sign < 0.0);
@@ -125,14 +115,22 @@ pub(super) fn of_axes(begun: &[Begun]) -> Option<String> {
         true => (upward, downward, "upward", "downward"),
         false => (downward, upward, "downward", "upward"),
     };
-    let names: Vec<&str> = few.iter().take(LISTED).map(|one| one.name.as_str()).collect();
+    let names: Vec<String> = few.iter().map(|one| one.name.clone()).collect();
     (!few.is_empty() && 3 * few.len() <= many.len()).then(|| {
         format!(
-            "Warning: the axis counts {way} in {}{}, and {others} in the others: do their levels have one zero?",
-            names.join(", "),
-            if few.len() > LISTED { " and more" } else { "" }
+            "Warning: the axis counts {way} in {}, and {others} in the others: do their levels have one zero?",
+            listed(&names)
         )
     })
+}
+
+/// The first of `names`, and how many more there are.
+fn listed(names: &[String]) -> String {
+    let first = names[..names.len().min(LISTED)].join(", ");
+    match names.len().saturating_sub(LISTED) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
 }
 
 fn is_off(fall: Reading, gravity: f64) -> bool {
