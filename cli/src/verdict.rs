@@ -183,6 +183,9 @@ fn held_out(diagnosis: &Diagnosis) -> String {
     let which = match held_out.conditions {
         LeftOut::Holdout => "held-out conditions",
         LeftOut::OneAtATime => "conditions left out one at a time (the set holds out none)",
+        LeftOut::HoldoutAndOneAtATime => {
+            "held-out conditions, which show nothing, and the others left out one at a time"
+        }
     };
     let errors = (held_out.before, held_out.after, held_out.noise_floor);
     let explained = match held_out.explained {

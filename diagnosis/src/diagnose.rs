@@ -12,7 +12,7 @@ use crate::held_out::HeldOut;
 use crate::judge::{Grounds, Judge, adequate, cannot_tell, nothing, unexplained};
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
-use crate::missing_force::missing_force;
+use crate::missing_force::{any_force, described};
 use crate::noise::Noise;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
@@ -100,7 +100,7 @@ fn ranked_by<'a>(
         alike: ranking.not_separable(problem),
         ranking,
         leader,
-        of_any_force: OnceCell::new(),
+        any_force: OnceCell::new(),
     }))
 }
 
@@ -118,8 +118,8 @@ pub(crate) fn as_it_is(problem: &FitProblem<'_>, seed: u64) -> Result<Diagnosis,
     };
     let ranking = Ranking::of(problem, &baseline, &[], seed);
     let (weighed, leader) = (baseline.clone(), baseline.clone());
-    let (alike, of_any_force) = (Vec::new(), OnceCell::new());
-    let judge = Judge { problem, seed, baseline, weighed, ranking, alike, leader, of_any_force };
+    let (alike, any_force) = (Vec::new(), OnceCell::new());
+    let judge = Judge { problem, seed, baseline, weighed, ranking, alike, leader, any_force };
     let p_lof = lack_of_fit(problem, &judge.baseline, seed)?;
     let verdict = match adequate(p_lof) {
         true => nothing(problem, &judge.baseline),
@@ -156,8 +156,14 @@ pub fn seek_missing_force(
     diagnosis: &mut Diagnosis,
 ) -> Result<(), FitError> {
     if let (Some(baseline), None) = (&diagnosis.baseline, &diagnosis.missing_force) {
-        let best = diagnosis.ranking.first().and_then(|effect| effect.delta);
-        diagnosis.missing_force = missing_force(problem, baseline, best)?;
+        let best = diagnosis.log_odds_of_leader;
+        let any = match diagnosis.any_force.take() {
+            None => any_force(problem, baseline)?,
+            known => known,
+        };
+        if let Some(any) = any {
+            diagnosis.missing_force = described(problem, baseline, (any, best))?;
+        }
     }
     Ok(())
 }

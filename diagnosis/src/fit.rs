@@ -4,44 +4,31 @@
 //! the others and all amplitudes as they are. One that ends outside its range is held at the bound while the rest is
 //! fitted again, and set free if χ² then falls from the bound inwards.
 
-use std::cell::RefCell;
+mod scale;
+mod search;
 
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::storage::Owned;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::forward::{Bound, Forward, ParameterKind, PredictError, Prior};
 use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
+pub(crate) use scale::{Scale, point_of, unknowns, value, value_mut};
+use search::{Known, Search};
 
 /// Where the search ends: relative change of χ² and of the unknowns.
 const TOLERANCE: f64 = 1e-6;
 
-/// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
-const PATIENCE: usize = 30;
-
-/// Longest first step, in units of the distance from zero: a longer one leaves where derivatives hold, and logarithms
-/// do not come back.
-const FIRST_STEP: f64 = 1.0;
-
-/// By how much what cannot be integrated misses, in units of the best that was tried: the search turns back from it
-/// and takes a tenth of the step.
-const REFUSED: f64 = 1e3;
-
 /// How often what is held at bounds is set free: a step too long leaves a range that the best fit is in.
 const RELEASES: usize = 10;
 
-/// Share of its start below which a parameter without a sign is searched as it is: a logarithm never comes to zero, and
-/// from next to zero never back.
-const LINEAR: f64 = 0.1;
+/// Standard deviations of the prediction over which a search may come and leave its derivatives as they are.
+const NEAR: f64 = 0.5;
 
-/// Share of a parameter by which it is moved for a derivative.
-const STEP: f64 = 1e-3;
-
-/// Share of the standard deviation of a prior around zero, likewise: above what rounding does to differences.
-const OF_PRIOR: f64 = 0.05;
+/// Share of χ² by which a search has to gain to be repeated with derivatives that are taken anew, and how often it is.
+const GOES_ON: f64 = 1e-4;
+const FRESH: usize = 3;
 
 /// Standard deviations of its prior beyond which an error of the apparatus is strained: a fit that takes it there may make
 /// up for what the model lacks.
@@ -61,6 +48,19 @@ pub struct Data<'a> {
     pub conditions: &'a [usize],
     /// One per condition of `conditions`, in that order.
     pub weights: &'a [Weight],
+}
+
+/// Whitened derivatives of a prediction that are known, by unknown.
+type Columns<'a> = dyn Fn(usize) -> Option<DVector<f64>> + Sync + 'a;
+
+/// Those that a search knows where it ended, at `point`.
+fn columns<'a>(
+    known: Option<&'a Known>,
+    point: &'a Point,
+    scales: &'a [Scale],
+) -> impl Fn(usize) -> Option<DVector<f64>> + Sync + 'a {
+    let near = known.filter(|known| known.moved <= NEAR);
+    move |at| Some(near?.slope(at)? / -scales[at].slope(value(point, at)))
 }
 
 /// The result of a fit.
@@ -92,6 +92,12 @@ impl Fit {
     #[must_use]
     pub fn n_free(&self) -> usize {
         self.free.len()
+    }
+
+    /// Whitened derivative of the prediction by unknown `at`; `None` of one that is held.
+    fn column(&self, at: usize) -> Option<DVector<f64>> {
+        let place = self.free.iter().position(|free| *free == at)?;
+        Some(self.jacobian.column(place).into_owned())
     }
 
     /// The unknowns that are not held at a bound, parameters first.
@@ -154,7 +160,8 @@ impl Data<'_> {
     }
 
     /// Fits `candidate` as listed from where parameters start, without what another fit has found and with the apparatus
-    /// as it is stated; the derivatives are those by errors of the apparatus too. A search by all of them from there may end
+    /// as it is stated; the derivatives by errors of the apparatus are those of `near`, a fit to the same measurements under the
+    /// same weights. A search by all of them from there may end
     /// where errors of the apparatus make up for a law.
     ///
     /// # Errors
@@ -162,6 +169,7 @@ impl Data<'_> {
     pub(crate) fn fit_with_apparatus_as_stated(
         &self,
         candidate: usize,
+        near: &Fit,
     ) -> Result<Fit, PredictError> {
         let start = Point { effects: vec![(candidate, 0.0)], ..Point::start(self.forward) };
         let scales = self.scales(&start);
@@ -171,9 +179,13 @@ impl Data<'_> {
         };
         let forms = self.forms(&start).into_iter().enumerate();
         let held = forms.map(|(at, is_form)| is_form || is_apparatus(at)).collect();
-        let (point, mut held) = self.search(&start, &scales, held)?;
+        // It is where other searches begin.
+        let (point, mut held, known) = self.search(&start, &scales, held, 0)?;
         held.iter_mut().enumerate().for_each(|(at, held)| *held &= !is_apparatus(at));
-        self.result(point, &scales, &held)
+        let own = columns(known.as_ref(), &point, &scales);
+        self.result(point.clone(), (&scales, &held), &|at| {
+            own(at).or_else(|| near.column(at).filter(|_| is_apparatus(at)))
+        })
     }
 
     /// What a fit as listed would be that ends at `point`.
@@ -202,7 +214,7 @@ impl Data<'_> {
         for (at, scale) in scales.iter().enumerate() {
             held[at] |= Bound::at(value(&point, at), scale.min, scale.max).is_some();
         }
-        self.result(point, &scales, &held)
+        self.result(point, (&scales, &held), &|_| None)
     }
 
     /// Which unknowns of `point` are numbers of a form.
@@ -219,27 +231,43 @@ impl Data<'_> {
         scales: &[Scale],
         held: Vec<bool>,
     ) -> Result<Fit, PredictError> {
-        let (point, at_end) = self.search(start, scales, held)?;
-        self.result(point, scales, &at_end)
+        let (point, at_end, known) = self.search(start, scales, held, FRESH)?;
+        let known = columns(known.as_ref(), &point, scales);
+        self.result(point.clone(), (scales, &at_end), &known)
     }
 
-    /// Searches what is not `held` from `start`; gives the best and what is held there, since it is at a bound.
+    /// Searches what is not `held` from `start`; gives the best, what is held there, since it is at a bound, and the
+    /// derivatives that are known there. It is repeated up to `rounds_left` times with derivatives that are taken anew.
     fn search(
         &self,
         start: &Point,
         scales: &[Scale],
         mut held: Vec<bool>,
-    ) -> Result<(Point, Vec<bool>), PredictError> {
+        mut rounds_left: usize,
+    ) -> Result<(Point, Vec<bool>, Option<Known>), PredictError> {
         let mut best = self.residual(start)?.norm_squared();
         let mut point = start.clone();
+        let (mut known, mut is_repeated) = (None, false);
         let fixed = held.clone();
         for _ in 0..=RELEASES {
-            point = self.descend(start, point, scales, &mut held);
-            let chi2 = self.residual(&point)?.norm_squared();
-            if best - chi2 <= TOLERANCE * best {
+            point = self.descend(start, point, (scales, &mut held), &mut known);
+            let residual = self.residual(&point)?;
+            let chi2 = residual.norm_squared();
+            known = known.and_then(|known| known.after(&unknowns(&point, scales), &residual));
+            let gain = best - chi2;
+            if gain <= TOLERANCE * best && !is_repeated {
                 break;
             }
             best = chi2;
+            let is_near = known.as_ref().is_some_and(|known| known.moved <= NEAR);
+            let goes_on = gain > GOES_ON * best && rounds_left > 0;
+            if !is_near && goes_on && held.contains(&false) {
+                // Derivatives that were corrected on the way may end a search too early.
+                known = None;
+                rounds_left -= 1;
+                is_repeated = true;
+                continue;
+            }
             let inward = (0..scales.len()).filter(|&at| held[at] && !fixed[at]);
             let inward: Vec<usize> =
                 inward.filter(|&at| self.falls_inward(&point, scales, at, chi2)).collect();
@@ -247,8 +275,9 @@ impl Data<'_> {
                 break;
             }
             inward.into_iter().for_each(|at| held[at] = false);
+            is_repeated = false;
         }
-        Ok((point, held))
+        Ok((point, held, known))
     }
 
     /// Whether χ² falls below `chi2` where unknown `at`, held at a bound, moves into its range.
@@ -266,20 +295,14 @@ impl Data<'_> {
         &self,
         start: &Point,
         mut point: Point,
-        scales: &[Scale],
-        held: &mut [bool],
+        (scales, held): (&[Scale], &mut [bool]),
+        known: &mut Option<Known>,
     ) -> Point {
         while held.contains(&false) {
-            let unknowns = unknowns(&point, scales);
-            let best = RefCell::new((f64::INFINITY, unknowns.clone()));
-            let search = Search { data: self, scales, held, like: start, unknowns, best };
-            let solver = LevenbergMarquardt::new()
-                .with_ftol(TOLERANCE)
-                .with_xtol(TOLERANCE)
-                .with_patience(PATIENCE)
-                .with_stepbound(FIRST_STEP);
-            // The best that was tried, since the search may end where the model cannot be integrated.
-            let (_, unknowns) = solver.minimize(search).0.best.into_inner();
+            let from = unknowns(&point, scales);
+            let search = Search::new((self, start), (scales, held), from, known.as_ref());
+            let (unknowns, at_end) = search.minimum();
+            *known = at_end;
             point = point_of(&unknowns, scales, start);
             let mut outside = false;
             for (at, scale) in scales.iter().enumerate() {
@@ -345,17 +368,22 @@ impl Data<'_> {
     /// # Errors
     /// If the model cannot be integrated there.
     pub(crate) fn jacobian(&self, fit: &Fit) -> Result<DMatrix<f64>, PredictError> {
-        self.derivative(&fit.point, &self.scales(&fit.point), &fit.free)
+        self.derivative(&fit.point, &self.scales(&fit.point), &fit.free, &|_| None)
     }
 
+    /// The columns that `known` gives are not taken anew.
     fn derivative(
         &self,
         point: &Point,
         scales: &[Scale],
         free: &[usize],
+        known: &Columns<'_>,
     ) -> Result<DMatrix<f64>, PredictError> {
         let here = self.residual(point)?;
         let column = |&at: &usize| {
+            if let Some(column) = known(at) {
+                return column;
+            }
             let step = scales[at].physical_step(value(point, at));
             let moved = |by: f64| {
                 let mut point = point.clone();
@@ -376,9 +404,14 @@ impl Data<'_> {
         })
     }
 
-    fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
+    fn result(
+        &self,
+        point: Point,
+        (scales, held): (&[Scale], &[bool]),
+        known: &Columns<'_>,
+    ) -> Result<Fit, PredictError> {
         let free: Vec<usize> = (0..scales.len()).filter(|&at| !held[at]).collect();
-        let jacobian = self.derivative(&point, scales, &free)?;
+        let jacobian = self.derivative(&point, scales, &free, known)?;
         // What nothing depends on any more is at a bound too.
         let weight = |column: usize| {
             let at = free[column];
@@ -405,160 +438,9 @@ impl Data<'_> {
     /// How each unknown of `start` is searched.
     pub(crate) fn scales(&self, start: &Point) -> Vec<Scale> {
         let parameters = self.forward.parameters().iter();
-        let parameters = parameters.map(|parameter| Scale {
-            linear: parameter.has_no_sign().then_some(LINEAR * parameter.start),
-            min: parameter.min,
-            max: parameter.max,
-            // An open range says nothing of the size of a number that starts at zero; a prior does.
-            step: match parameter.prior {
-                Some(prior) if parameter.start == 0.0 => OF_PRIOR * prior.sigma,
-                _ => {
-                    let size = 1e-3 * (parameter.max - parameter.min).min(1.0);
-                    STEP * parameter.start.abs().max(size)
-                }
-            },
-        });
         let candidates = self.forward.candidates();
-        let amplitudes = start.effects.iter().map(|&(index, _)| Scale {
-            linear: None,
-            min: candidates[index].min,
-            max: candidates[index].max,
-            step: 0.1 * candidates[index].step,
-        });
-        parameters.chain(amplitudes).collect()
-    }
-}
-
-/// How an unknown is searched.
-pub(crate) struct Scale {
-    /// Size below which one without a sign is searched as it is, above by its logarithm; none for what has a sign.
-    linear: Option<f64>,
-    pub(crate) min: f64,
-    pub(crate) max: f64,
-    step: f64,
-}
-
-impl Scale {
-    /// Derivative of the value by its unknown, at `value`.
-    pub(crate) fn slope(&self, value: f64) -> f64 {
-        self.linear.map_or(1.0, |linear| libm::hypot(value, linear))
-    }
-
-    fn unknown(&self, value: f64) -> f64 {
-        self.linear.map_or(value, |linear| libm::asinh(value / linear))
-    }
-
-    /// The value, brought into its range.
-    fn value(&self, unknown: f64) -> f64 {
-        let value = self.linear.map_or(unknown, |linear| linear * libm::sinh(unknown));
-        value.clamp(self.min, self.max)
-    }
-
-    fn contains(&self, unknown: f64) -> bool {
-        (self.unknown(self.min)..=self.unknown(self.max)).contains(&unknown)
-    }
-
-    /// By how much an unknown of this value is moved in earnest, to weigh derivatives by.
-    fn reach(&self, value: f64) -> f64 {
-        if self.linear.is_some() { self.slope(value) } else { self.step / STEP }
-    }
-
-    fn unknown_step(&self) -> f64 {
-        if self.linear.is_some() { STEP } else { self.step }
-    }
-
-    fn physical_step(&self, value: f64) -> f64 {
-        if self.linear.is_some() { STEP * self.slope(value) } else { self.step }
-    }
-}
-
-pub(crate) fn value(point: &Point, at: usize) -> f64 {
-    let n = point.parameters.len();
-    if at < n { point.parameters[at] } else { point.effects[at - n].1 }
-}
-
-pub(crate) fn value_mut(point: &mut Point, at: usize) -> &mut f64 {
-    let n = point.parameters.len();
-    if at < n { &mut point.parameters[at] } else { &mut point.effects[at - n].1 }
-}
-
-pub(crate) fn unknowns(point: &Point, scales: &[Scale]) -> Vec<f64> {
-    scales.iter().enumerate().map(|(at, scale)| scale.unknown(value(point, at))).collect()
-}
-
-pub(crate) fn point_of(unknowns: &[f64], scales: &[Scale], like: &Point) -> Point {
-    let mut point = like.clone();
-    for (at, (unknown, scale)) in unknowns.iter().zip(scales).enumerate() {
-        *value_mut(&mut point, at) = scale.value(*unknown);
-    }
-    point
-}
-
-/// The search of the unknowns that are not held.
-struct Search<'a> {
-    data: &'a Data<'a>,
-    scales: &'a [Scale],
-    held: &'a [bool],
-    like: &'a Point,
-    unknowns: Vec<f64>,
-    /// χ² and unknowns of the best that was tried.
-    best: RefCell<(f64, Vec<f64>)>,
-}
-
-impl Search<'_> {
-    fn free(&self) -> Vec<usize> {
-        (0..self.held.len()).filter(|&at| !self.held[at]).collect()
-    }
-}
-
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
-    type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, Dyn>;
-    type ParameterStorage = Owned<f64, Dyn>;
-
-    fn set_params(&mut self, free: &DVector<f64>) {
-        for (at, unknown) in self.free().into_iter().zip(free.iter()) {
-            self.unknowns[at] = *unknown;
-        }
-    }
-
-    fn params(&self) -> DVector<f64> {
-        let free = self.free();
-        DVector::from_iterator(free.len(), free.iter().map(|&at| self.unknowns[at]))
-    }
-
-    fn residuals(&self) -> Option<DVector<f64>> {
-        let mut best = self.best.borrow_mut();
-        let Self { data, scales, like, unknowns, .. } = self;
-        let Some(residual) = data.residual_at(unknowns, scales, like) else {
-            let rows = self.data.rows();
-            let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
-            return size.is_finite().then(|| DVector::from_element(rows, size));
-        };
-        let chi2 = residual.norm_squared();
-        if chi2 < best.0 {
-            *best = (chi2, self.unknowns.clone());
-        }
-        Some(residual)
-    }
-
-    fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let Self { data, scales, like, unknowns, .. } = self;
-        let here = data.residual_at(unknowns, scales, like)?;
-        let column = |at: usize| {
-            // Inwards from the upper end of a range, where a step outwards changes nothing.
-            let step = scales[at].unknown_step();
-            let step = if scales[at].contains(unknowns[at] + step) { step } else { -step };
-            let moved = |by: f64| {
-                let mut unknowns = unknowns.clone();
-                unknowns[at] += by;
-                data.residual_at(&unknowns, scales, like)
-            };
-            let forth = moved(step).map(|there| (there - &here) / step);
-            let slope = forth.or_else(|| moved(-step).map(|there| (&here - there) / step));
-            slope.unwrap_or_else(|| &here * 0.0)
-        };
-        let columns: Vec<_> = self.free().into_par_iter().map(column).collect();
-        Some(DMatrix::from_columns(&columns))
+        let amplitudes = start.effects.iter();
+        let amplitudes = amplitudes.map(|&(index, _)| Scale::of_amplitude(&candidates[index]));
+        parameters.map(Scale::of_parameter).chain(amplitudes).collect()
     }
 }

@@ -36,44 +36,45 @@ pub trait Forward: Sync {
     /// If the model cannot be integrated with these values.
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError>;
 
+    /// The model that this one adds something to. What follows is that of this model unless it says otherwise.
+    fn within(&self) -> Option<&dyn Forward> {
+        None
+    }
+
     /// Covariance of what [`Forward::predict`] says with the amplitudes `effects`, as (index in
     /// [`Forward::candidates`], q): of a model that is known from few runs of its own. `None` for one
     /// that is exact.
     fn own_covariance(&self, condition: usize, effects: &[(usize, f64)]) -> Option<DMatrix<f64>> {
-        let _ = (condition, effects);
-        None
+        self.within()?.own_covariance(condition, effects)
     }
 
     /// Covariance of the numbers of one run, of a model that has runs of its own. `None` for one that is exact.
     fn spread_of_runs(&self, condition: usize) -> Option<&DMatrix<f64>> {
-        let _ = condition;
-        None
+        self.within()?.spread_of_runs(condition)
     }
 
     /// Error (s) with which the stopping time of `condition` is weighted if it has a kink in the parameters, at which a fit
     /// would stop too early; `None` if it is smooth.
     fn stop_error(&self, condition: usize) -> Option<f64> {
-        let _ = condition;
-        None
+        self.within()?.stop_error(condition)
     }
 
     /// Whether an error on held-out conditions decides here whether an effect is named; of a bed, impacts on fresh beds
     /// do so afterwards.
     fn is_judged_by_held_out(&self) -> bool {
-        true
+        self.within().is_none_or(|model| model.is_judged_by_held_out())
     }
 
     /// Effects whose χ² falls by less than this behind the best are not told apart.
     fn separation(&self) -> f64 {
-        SEPARATE
+        self.within().map_or(SEPARATE, |model| model.separation())
     }
 
     /// How the observables differ from run to run, of a model that has runs of its own to tell it by: one column
     /// per independent way, of one standard deviation where runs scatter by as much as they are, so that a
     /// relative scatter multiplies them. `None` where [`Scatter`] says it.
     fn ways_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
-        let _ = condition;
-        None
+        self.within()?.ways_of_scatter(condition)
     }
 
     /// The model as one to which forces can be added by formulas; `None` for a model that is no force law.
@@ -148,7 +149,7 @@ pub(crate) const SEPARATE: f64 = 9.2;
 const AT_BOUND: f64 = 1e-6;
 
 /// Standard errors to either side that hold 95 % of a normal distribution.
-const NORMAL_95: f64 = 1.96;
+pub(crate) const NORMAL_95: f64 = 1.96;
 
 /// An amplitude that is farther than so many standard errors outside of its usual range is outside of it.
 const OUTSIDE: f64 = 2.0;

@@ -60,6 +60,8 @@ pub enum LeftOut {
     Holdout,
     /// Each in turn, since the set holds out none.
     OneAtATime,
+    /// Those that the set holds out, and each of the others in turn.
+    HoldoutAndOneAtATime,
 }
 
 impl LeftOut {
@@ -69,6 +71,9 @@ impl LeftOut {
         match self {
             Self::Holdout => "held-out conditions",
             Self::OneAtATime => "conditions left out one at a time",
+            Self::HoldoutAndOneAtATime => {
+                "held-out conditions, and the others left out one at a time,"
+            }
         }
     }
 }
@@ -131,29 +136,68 @@ impl HeldOut {
     /// # Errors
     /// If the model fails.
     pub fn of(problem: &FitProblem<'_>, before: &Fitted, after: &Fitted) -> Result<Self, FitError> {
+        let conditions = match problem.observed.holdout.is_empty() {
+            true => LeftOut::OneAtATime,
+            false => LeftOut::Holdout,
+        };
+        Self::over(problem, conditions, (before, after))
+    }
+
+    /// The same to judge by. Where the model as it is predicts the held-out conditions to the noise, these conditions show
+    /// no effect, whatever is missing: each of the others is left out in turn as well.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub(crate) fn judging(
+        problem: &FitProblem<'_>,
+        before: &Fitted,
+        after: &Fitted,
+    ) -> Result<Self, FitError> {
+        let stated = Self::of(problem, before, after)?;
+        let shows_nothing = stated.conditions == LeftOut::Holdout
+            && stated.is_above_noise() == Some(false)
+            && problem.forward.is_judged_by_held_out();
+        match shows_nothing {
+            true => Self::over(problem, LeftOut::HoldoutAndOneAtATime, (before, after)),
+            false => Ok(stated),
+        }
+    }
+
+    fn over(
+        problem: &FitProblem<'_>,
+        conditions: LeftOut,
+        (before, after): (&Fitted, &Fitted),
+    ) -> Result<Self, FitError> {
         let unit = Unit::of(problem.set.kind);
         let pick = |errors: &Errors| unit.pick(errors);
-        let (conditions, judged) = match problem.observed.holdout.is_empty() {
-            true => (LeftOut::OneAtATime, &problem.observed.fit),
-            false => (LeftOut::Holdout, &problem.observed.holdout),
+        let judged = match conditions {
+            LeftOut::OneAtATime => &problem.observed.fit,
+            LeftOut::Holdout | LeftOut::HoldoutAndOneAtATime => &problem.observed.holdout,
         };
         let is_proposed = !after.fit.point.effects.is_empty();
         let in_turn = |fitted: &Fitted| Predicted::left_out(problem, after, fitted);
-        let fitted_to: Vec<Pair> = match conditions {
-            LeftOut::Holdout if is_proposed => {
-                let fit = &problem.observed.fit;
-                in_both(problem.observed, fit, in_turn(before)?, in_turn(after)?).0
+        let fitted_to = || -> Result<(Vec<Pair>, Vec<NotPredicted>), FitError> {
+            let fit = &problem.observed.fit;
+            Ok(in_both(problem.observed, fit, in_turn(before)?, in_turn(after)?))
+        };
+        let predict = |fitted: &Fitted| match conditions {
+            LeftOut::OneAtATime => in_turn(fitted),
+            _ => Predicted::unseen(problem, after, fitted, judged),
+        };
+        let (mut both, mut not_predicted) =
+            in_both(problem.observed, judged, predict(before)?, predict(after)?);
+        let beside = match conditions {
+            LeftOut::Holdout if is_proposed => fitted_to()?.0,
+            LeftOut::HoldoutAndOneAtATime => {
+                let (pairs, others) = fitted_to()?;
+                both.extend(pairs);
+                not_predicted.extend(others);
+                Vec::new()
             }
             _ => Vec::new(),
         };
-        let predict = |fitted: &Fitted| match conditions {
-            LeftOut::Holdout => Predicted::unseen(problem, after, fitted, judged),
-            LeftOut::OneAtATime => in_turn(fitted),
-        };
-        let (both, not_predicted) =
-            in_both(problem.observed, judged, predict(before)?, predict(after)?);
         // A few held-out conditions do not determine the ratio: fitted conditions are left out in turn as well.
-        let all: Vec<&Pair> = both.iter().chain(&fitted_to).collect();
+        let all: Vec<&Pair> = both.iter().chain(&beside).collect();
         let error = |which: fn(&(usize, Predicted, Predicted)) -> (usize, &Predicted)| {
             let mut sums = Sums::default();
             for (condition, predicted) in both.iter().map(which) {
@@ -210,7 +254,7 @@ impl HeldOut {
     /// better, errors weighed by their noise, and nothing less than the model without it does.
     #[must_use]
     pub fn doubt(&self) -> Option<StrengthReason> {
-        let worse = |one: &NotPredicted| one.by == Fails::After;
+        let worse = |one: &NotPredicted| one.by == Fails::After && !one.is_open;
         if self.not_predicted.iter().any(worse) {
             Some(StrengthReason::ConditionsNotPredicted)
         } else if self.conditions_judged == 0 {
@@ -243,6 +287,13 @@ impl HeldOut {
     #[must_use]
     pub(crate) fn leaves_a_part(&self) -> bool {
         self.explained.is_some_and(|share| share < NEARLY_ALL)
+    }
+
+    /// Whether what is proposed leaves more than noise, and a third of what exceeds the noise.
+    #[must_use]
+    pub(crate) fn leaves_a_third(&self) -> bool {
+        let leaves = self.explained.is_some_and(|share| share < 1.0 - MOST);
+        leaves && self.leaves_more_than_noise() == Some(true)
     }
 
     /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too, or reduces
@@ -390,7 +441,10 @@ mod tests {
 
     fn held_out(judged: usize, by: Option<Fails>, gain: f64) -> HeldOut {
         let error = (judged > 0).then_some(1e-3);
-        let one = |by| NotPredicted { condition: "a".into(), by, why: "it never stops".into() };
+        let one = |by| {
+            let (condition, why) = ("a".to_owned(), "it never stops".to_owned());
+            NotPredicted { condition, by, why, is_open: false }
+        };
         HeldOut {
             before: error,
             after: error,

@@ -15,7 +15,7 @@ use crate::forward::ParameterKind;
 use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
-use crate::missing_force::log_odds;
+use crate::missing_force::{AnyForce, any_force};
 use crate::noise::Noise;
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
@@ -61,8 +61,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) alike: Vec<usize>,
     /// The model with the best effect, under its own noise.
     pub(crate) leader: Fitted,
-    /// Log odds of a force of any form against none; none where that is not known.
-    pub(crate) of_any_force: OnceCell<Option<f64>>,
+    /// A force of any form, once it was asked for; none where nothing can be told of one.
+    pub(crate) any_force: OnceCell<Option<AnyForce>>,
 }
 
 /// Two effects that explain the data.
@@ -139,7 +139,7 @@ impl Judge<'_> {
             return Ok(cannot_tell(self.problem, why));
         }
         let grounds = Grounds { p_lof_with: p_leader, ..grounds };
-        let held_out = HeldOut::of(self.problem, &self.weighed, &self.leader)?;
+        let held_out = HeldOut::judging(self.problem, &self.weighed, &self.leader)?;
         let is_judged = self.problem.forward.is_judged_by_held_out();
         // Real effects do not follow formulas exactly: a lack of fit counts only if held-out conditions show it.
         let is_explained = adequate(p_leader) || (is_judged && held_out.is_within_noise());
@@ -162,7 +162,8 @@ impl Judge<'_> {
         let is_named = is_explained || is_most;
         let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
         if is_named && !is_one_of_many {
-            let leaves_more = held_out.leaves_more_than_noise() == Some(true);
+            let leaves_more =
+                held_out.leaves_more_than_noise() == Some(true) && held_out.leaves_a_part();
             let found = self.one(grounds, held_out)?;
             let is_of_another_form = !adequate(p_leader) || leaves_more;
             return Ok(match is_of_another_form && !found.effects.is_empty() {
@@ -208,6 +209,11 @@ impl Judge<'_> {
             return Ok(None);
         }
         let odds = self.of_any_force()?.filter(|odds| *odds >= MORE_THAN_SESSIONS);
+        let Some(Some(any)) = self.any_force.get() else { return Ok(None) };
+        // A force whose band holds zero everywhere says no more than that conditions differ.
+        if odds.is_none() || !any.is_clear(self.problem, &self.baseline)? {
+            return Ok(None);
+        }
         Ok(odds.map(|odds| {
             format!(
                 "conditions differ by more than their repeats show, and a force that depends on speed, angle or body \
@@ -240,17 +246,24 @@ impl Judge<'_> {
         if !self.problem.forward.is_judged_by_held_out() {
             return Ok(false);
         }
-        let of_effects = 0.5 * (self.baseline.deviance() - fitted.deviance());
-        Ok(self.of_any_force()?.is_some_and(|of_any| of_any + least > of_effects))
+        let of_effects = self.log_odds_of(fitted);
+        Ok(self.of_any_force()?.zip(of_effects).is_some_and(|(of_any, own)| of_any + least > own))
+    }
+
+    /// Log odds of the effects of `fitted` against none; `None` where it has none.
+    fn log_odds_of(&self, fitted: &Fitted) -> Option<f64> {
+        let has_effects = !fitted.fit.point.effects.is_empty();
+        has_effects.then(|| 0.5 * (self.baseline.deviance() - fitted.deviance()))
     }
 
     /// Log odds of a force of any form against none; `None` where that is not known.
     fn of_any_force(&self) -> Result<Option<f64>, FitError> {
-        if let Some(known) = self.of_any_force.get() {
-            return Ok(*known);
+        if self.any_force.get().is_none() {
+            let found = any_force(self.problem, &self.baseline)?;
+            self.any_force.get_or_init(|| found);
         }
-        let odds = log_odds(self.problem, &self.baseline)?;
-        Ok(*self.of_any_force.get_or_init(|| odds))
+        let known = self.any_force.get().and_then(Option::as_ref);
+        Ok(known.map(|any| any.log_odds(&self.baseline)))
     }
 
     /// The verdict on the best effect alone, with which the model explains what was fitted.
@@ -311,13 +324,14 @@ impl Judge<'_> {
         }
         let narrow = without_width(self.problem, &pair.fitted)?;
         let p_lof = lack_of_fit(self.problem, &narrow, self.seed)?;
-        let held_out = HeldOut::of(self.problem, &self.weighed, &pair.fitted)?;
+        let held_out = HeldOut::judging(self.problem, &self.weighed, &pair.fitted)?;
         // Two effects fit what one condition shows more easily than one does.
         let stands = adequate(p_lof)
             && self.needs_an_implausible_apparatus(&pair.fitted).is_none()
             && !held_out.refutes()
             && !held_out.is_shown_by_few()
             && self.too_small(&held_out).is_none()
+            && !held_out.leaves_a_third()
             && !self.is_no_likelier(&pair.fitted, NOT_ANY)?;
         Ok(stands.then_some(Two { pair, p_lof, held_out }))
     }
@@ -325,7 +339,7 @@ impl Judge<'_> {
     /// The verdict none-of-the-candidates, or below-noise if the model misses held-out conditions by little more than
     /// their noise.
     fn refuse(&self, grounds: Grounds) -> Result<Diagnosis, FitError> {
-        let held_out = HeldOut::of(self.problem, &self.baseline, &self.baseline)?;
+        let held_out = HeldOut::judging(self.problem, &self.baseline, &self.baseline)?;
         let is_small = held_out.is_above_noise() == Some(false);
         let verdict = match is_small && self.problem.forward.is_judged_by_held_out() {
             true => Verdict::BelowNoise,
@@ -403,6 +417,8 @@ impl Judge<'_> {
             holdout: Some(held_out),
             unexplained,
             missing_force: None,
+            any_force: self.any_force.get().cloned().flatten(),
+            log_odds_of_leader: self.log_odds_of(&self.leader),
             apparatus: found(ApparatusError::all(problem.forward, proposed)),
             preparation: ApparatusError::of_preparation(problem.forward, &proposed.fit),
             next: Vec::new(),

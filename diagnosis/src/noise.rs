@@ -352,15 +352,17 @@ fn from_logarithms(at: &[f64], instrument: &Instrument, unstated: Unstated) -> N
 /// What the likelihood needs of one condition, in units of the stated error of its readings.
 struct Term {
     sensitivity: Sensitivity,
+    /// The inputs that the observables follow.
+    felt: Vec<usize>,
     /// Number of observables.
     n: f64,
     /// Number of independent deviations.
     contrasts: f64,
-    /// JᵀJ of the sensitivities.
+    /// JᵀJ of the sensitivities to these.
     gram: DMatrix<f64>,
-    /// JᵀSJ, with S the sum of squares of the deviations.
+    /// Jᵀ times the deviations, a column for each run.
     projected: DMatrix<f64>,
-    /// Trace of S.
+    /// Sum of squares of the deviations.
     trace: f64,
 }
 
@@ -372,13 +374,13 @@ impl Term {
         }
         let deviations = (0..condition.runs.len())
             .map(|run| condition.deviation(run).component_div(&condition.reading));
-        let mut projected = DMatrix::zeros(slope.ncols(), slope.ncols());
-        let mut trace = 0.0;
-        for deviation in deviations {
-            let onto = slope.tr_mul(&deviation);
-            projected += &onto * onto.transpose();
-            trace += deviation.norm_squared();
-        }
+        let felt = slope.column_iter().enumerate();
+        let felt = felt.filter(|(_, column)| column.iter().any(|slope| *slope != 0.0));
+        let felt: Vec<usize> = felt.map(|(input, _)| input).collect();
+        let slope = slope.select_columns(&felt);
+        let deviations: Vec<DVector<f64>> = deviations.collect();
+        let trace = deviations.iter().map(DVector::norm_squared).sum();
+        let projected = slope.tr_mul(&DMatrix::from_columns(&deviations));
         Self {
             n: condition.reading.len() as f64,
             contrasts: condition.runs.len() as f64 - 1.0,
@@ -386,6 +388,7 @@ impl Term {
             projected,
             trace,
             sensitivity: sensitivity.clone(),
+            felt,
         }
     }
 
@@ -393,13 +396,15 @@ impl Term {
     /// diagonal plus one dimension per random input.
     fn cost(&self, noise: &Noise) -> Option<f64> {
         let f2 = noise.reading.powi(2);
-        let sd = self.sensitivity.spread(&noise.spread);
-        let both = |matrix: &DMatrix<f64>| {
-            DMatrix::from_fn(sd.len(), sd.len(), |i, j| sd[i] * matrix[(i, j)] * sd[j] / f2)
-        };
-        let inner = DMatrix::identity(sd.len(), sd.len()) + both(&self.gram);
+        let sd = self.sensitivity.spread(&noise.spread).select_rows(&self.felt);
+        let inner = DMatrix::from_fn(sd.len(), sd.len(), |i, j| {
+            f64::from(u8::from(i == j)) + sd[i] * self.gram[(i, j)] * sd[j] / f2
+        });
         let inner = Cholesky::new(inner)?;
-        let explained = inner.solve(&both(&self.projected)).trace();
+        let mut onto = self.projected.clone();
+        onto.row_iter_mut().zip(sd.iter()).for_each(|(mut row, sd)| row *= *sd / noise.reading);
+        inner.l_dirty().solve_lower_triangular_mut(&mut onto);
+        let explained = onto.norm_squared();
         let determinant = self.n * libm::log(f2) + log_determinant(&inner);
         Some(self.contrasts * determinant + (self.trace - explained) / f2)
     }

@@ -27,6 +27,3 @@ pub(crate) use self::revisions::revisions;
 pub(crate) use self::signatures::signatures;
 pub(crate) use self::speed_angle::speed_angle;
 pub(crate) use self::trajectories::trajectories;
-
-/// Standard errors to either side that 95 % of normal numbers lie within.
-const TWO_SIDED_95: f64 = 1.96;

@@ -270,7 +270,9 @@ fn polished(problem: &FitProblem<'_>, fitted: &Fitted, score: &Score) -> Option<
 fn start_over(problem: &FitProblem<'_>, fitted: &Fitted, score: &mut Score) {
     let data = problem.data(&fitted.weights);
     let least = fitted.fit.chi2 - score.delta - OTHER_MINIMUM;
-    let Ok(stated) = data.fit_with_apparatus_as_stated(score.candidate()) else { return };
+    let Ok(stated) = data.fit_with_apparatus_as_stated(score.candidate(), &fitted.fit) else {
+        return;
+    };
     // Kept derivatives say at little cost whether a search can come this far.
     if improve(&data, &stated, fitted.fit.chi2).chi2 > least {
         return;

@@ -12,7 +12,7 @@ use crate::fit::Fit;
 use crate::fit_problem::Fitted;
 use crate::forward::{Bound, Candidate, Forward, ParameterKind};
 use crate::held_out::HeldOut;
-use crate::missing_force::MissingForce;
+use crate::missing_force::{AnyForce, MissingForce};
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
 pub use crate::strength::{Strength, StrengthReason};
@@ -180,6 +180,12 @@ pub struct Diagnosis {
     /// The model with what is named, fitted; the model as it is, where nothing is.
     #[serde(skip)]
     pub proposed: Option<Fitted>,
+    /// A force of any form, where the verdict asked for it; [`Self::missing_force`] describes it.
+    #[serde(skip)]
+    pub(crate) any_force: Option<AnyForce>,
+    /// Log odds of the best listed effect against none, each under its own noise.
+    #[serde(skip)]
+    pub(crate) log_odds_of_leader: Option<f64>,
 }
 
 /// One effect in a ranking.
@@ -421,6 +427,8 @@ impl Diagnosis {
             preparation: Vec::new(),
             unexplained: Unexplained { hint: why, ..Unexplained::default() },
             missing_force: None,
+            any_force: None,
+            log_odds_of_leader: None,
             next: Vec::new(),
             measured: BTreeMap::new(),
             after: None,

@@ -200,7 +200,10 @@ fn coarse(
         Some((b.z - a.z) / (b.t - a.t))
     };
     let at = frames[near];
-    let (velocity, next) = (chord(near).or_else(|| chord(near.checked_sub(1)?))?, chord(near + 1));
+    // Of the two chords beside it, the one that the bed has braked less is nearer to free fall.
+    let beside = [near.checked_sub(1).and_then(chord), chord(near)];
+    let velocity = beside.into_iter().flatten().reduce(f64::max)?;
+    let next = if beside[1] >= beside[0] { chord(near + 1) } else { beside[1] };
     let step = median_step(frames)?;
     let change = next.map_or(velocity, |next| velocity - next).abs();
     let depth = match distance(&at) <= 1.5 * step {

@@ -31,6 +31,9 @@ const OFF: f64 = 0.2;
 /// Fewest runs for a comparison of scalars.
 const FEWEST: usize = 3;
 
+/// Fewest frames that are equal by copying alone.
+const FEWEST_OF_A_COPY: usize = 4;
+
 /// Refuses statements that the readings contradict. Warns of implausible errors and of missing sizes.
 pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
     check_gravity(set, findings);
@@ -38,6 +41,7 @@ pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: 
     check_scalars(set, findings);
     check_errors(set, findings);
     check_sizes(set, places, findings);
+    check_copies(set, findings);
 }
 
 /// Refuses a stated gravity that differs from the acceleration before contact.
@@ -52,8 +56,9 @@ fn check_gravity(set: &MeasurementSet, findings: &mut Findings) {
     let is_of_one_place = all.iter().all(|one| (one.1 - gravity).abs() <= 1e-3 * gravity.abs());
     let weights: f64 = all.iter().map(|(fall, _)| fall.se.powi(-2)).sum();
     let fall = all.iter().map(|(fall, _)| fall.value * fall.se.powi(-2)).sum::<f64>() / weights;
-    let is_known = 1.0 / weights.sqrt() < KNOWN * EARTH;
-    let is_on_earth = (fall / EARTH - 1.0).abs() < OF_EARTH;
+    let error = 1.0 / weights.sqrt();
+    let is_known = error < KNOWN * EARTH.max((gravity - fall).abs());
+    let is_on_earth = (fall / EARTH - 1.0).abs() < OF_EARTH + 2.0 * error / EARTH;
     let is_elsewhere = gravity > ELSEWHERE * fall || fall > ELSEWHERE * gravity;
     if is_of_one_place && is_known && is_on_earth && is_elsewhere {
         findings.report(
@@ -90,6 +95,33 @@ fn check_floor(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
             return;
         }
     }
+}
+
+/// Warns of runs with the frames of another run: repeats that are copies hide the noise.
+fn check_copies(set: &MeasurementSet, findings: &mut Findings) {
+    let mut seen: Vec<(Vec<[u64; 2]>, usize)> = Vec::new();
+    for (at, run) in set.runs.iter().enumerate() {
+        if run.frames.len() < FEWEST_OF_A_COPY {
+            continue;
+        }
+        let bits = run.frames.iter().map(|frame| [frame.t.to_bits(), frame.z.to_bits()]);
+        seen.push((bits.collect(), at));
+    }
+    seen.sort();
+    let mut copies = seen.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    let Some(first) = copies.next() else { return };
+    let [one, other] = [first[0].1, first[1].1].map(|at| shorten(&set.runs[at].name));
+    let more = match copies.count() {
+        0 => String::new(),
+        1 => ", and 1 other run is a copy too".to_owned(),
+        n => format!(", and {n} other runs are copies too"),
+    };
+    findings.warn(
+        Diagnostic::warning(format!(
+            "the runs {one} and {other} have the same frames to the last digit{more}"
+        ))
+        .help("take one of them out: a copy counts as a repeat that does not scatter"),
+    );
 }
 
 /// Refuses exchanged stopping times and final depths.

@@ -59,9 +59,12 @@ impl Findings {
     }
 }
 
-/// A message as the beginning of a sentence.
+/// A message as the beginning of a sentence. A symbol that it begins with stays as it is.
 fn sentence(message: &str) -> String {
     let mut letters = message.chars();
+    if message.get(1..3) == Some(" =") {
+        return message.to_owned();
+    }
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 

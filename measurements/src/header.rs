@@ -59,7 +59,7 @@ pub(super) fn read(
             column.ok().flatten()
         })
         .collect();
-    note_ignored(row, &found, &columns, findings);
+    note_ignored(row, &found, (specs, &columns), findings);
     (findings.errors() == before).then_some(columns)
 }
 
@@ -112,7 +112,12 @@ fn shifted<'a>(spec: &ColumnSpec, names: &'a ColumnNames) -> Option<&'a Renamed>
     names.of(spec.key.strip_suffix("_zero")?)
 }
 
-fn note_ignored(row: &Row, found: &[String], columns: &[Option<Column>], findings: &mut Findings) {
+fn note_ignored(
+    row: &Row,
+    found: &[String],
+    (specs, columns): (&[ColumnSpec], &[Option<Column>]),
+    findings: &mut Findings,
+) {
     let known = |at: usize| columns.iter().flatten().any(|column| column.at == at);
     let ignored: Vec<String> = (0..found.len())
         .filter(|at| !known(*at))
@@ -122,7 +127,20 @@ fn note_ignored(row: &Row, found: &[String], columns: &[Option<Column>], finding
     if !ignored.is_empty() {
         let (noun, verb) = if ignored.len() == 1 { ("column", "is") } else { ("columns", "are") };
         let table = file_name(&row.table);
-        findings.note(format!("In {table} the {noun} {} {verb} ignored.", ignored.join(", ")));
+        let meant = specs.iter().zip(columns).find_map(|(spec, column)| {
+            let is_quantity = matches!(spec.content, Content::Quantity(_));
+            let at = like(spec.key, found).filter(|at| column.is_none() && is_quantity && !known(*at))?;
+            let name = shorten(&found[at]);
+            Some(format!(
+                "; if `{name}` is the quantity `{key}`, say it below [columns]: {key} = {{ name = \"{name}\" }}",
+                key = spec.key
+            ))
+        });
+        findings.note(format!(
+            "In {table} the {noun} {} {verb} ignored{}.",
+            ignored.join(", "),
+            meant.unwrap_or_default()
+        ));
     }
 }
 

@@ -64,6 +64,7 @@ mod smooth;
 mod speeds;
 mod start;
 mod stops;
+mod stray_scalars;
 mod strays;
 mod surface;
 mod table;

@@ -52,6 +52,14 @@ const LENGTHS: &[(f64, &str)] = &[
 const TIMES: &[(f64, &str)] =
     &[(10.0, "×10"), (100.0, "×100"), (1e3, "×1000 (ms for s)"), (1e6, "×1e6 (µs for s)")];
 
+/// Speeds that are taken for m/s, and how near a ratio has to be to one of them.
+const SPEEDS: &[(f64, &str)] = &[
+    (3.6, "km/h: divide them by 3.6"),
+    (2.237, "miles per hour: divide them by 2.237"),
+    (3.281, "ft/s: divide them by 3.281"),
+];
+const OF_SPEEDS: f64 = 0.06;
+
 /// Names magnitudes that look like another unit; a rate that does is warned of.
 pub(super) fn check(
     set: &MeasurementSet,
@@ -116,6 +124,7 @@ fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Cont
         true => ("positions", nearest(ratio, LENGTHS), ratio),
         false => ("times", nearest(1.0 / ratio, TIMES), 1.0 / ratio),
     };
+    let speeds = SPEEDS.iter().find(|(unit, _)| (by / unit - 1.0).abs() < OF_SPEEDS);
     let help = match LENGTHS.iter().chain(TIMES).any(|(unit, _)| is_near(by, *unit)) {
         true => format!("the {what} look like {factor}; [columns] gives the units of a table"),
         false => format!(
@@ -123,6 +132,10 @@ fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Cont
         ),
     };
     let speed = places[condition].speed;
+    let help = match speeds.filter(|_| ratio < 1.0) {
+        Some((_, unit)) => format!("the stated speeds look like {unit}; or {help}"),
+        None => help,
+    };
     let diagnostic = Diagnostic::error(message).at(speed, "the stated speed").help(help);
     Some(Contradiction { kind: ContradictionKind::Speeds, diagnostic })
 }

@@ -4,7 +4,7 @@
 //! the median of the runs of its condition.
 
 use crate::median::median;
-use crate::{Frame, MeasurementSet, Run};
+use crate::{Frame, MeasurementSet, Run, stray_scalars};
 
 /// Fewest frames of a run that is searched for strays.
 const FEWEST_FRAMES: usize = 12;
@@ -48,7 +48,7 @@ pub struct Cleaned {
     pub notes: Vec<String>,
 }
 
-/// `set` without stray frames and without runs that look mistracked, but for the runs that it says to keep; `error` is
+/// `set` without stray frames, runs that look mistracked and scalars that look mistyped, but for the runs that it says to keep; `error` is
 /// the error of one reading of a position (m).
 #[must_use]
 pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
@@ -109,6 +109,7 @@ pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
     }
     let mut at = 0..;
     set.runs.retain(|_| at.next().is_none_or(|at| !left_out.contains(&at)));
+    notes.extend(stray_scalars::take_out(&mut set));
     Cleaned { set, notes }
 }
 

@@ -131,7 +131,7 @@ fn without_impacts(id: &str, means: &[Option<Mean>]) -> NotPredicted {
         _ => Fails::Both,
     };
     let why = "fewer than two impacts under it ended".to_owned();
-    NotPredicted { condition: id.to_owned(), by, why }
+    NotPredicted { condition: id.to_owned(), by, why, is_open: false }
 }
 
 /// Mean of runs, and its standard error.

@@ -17,6 +17,9 @@ pub struct NotPredicted {
     pub by: Fails,
     /// Why not.
     pub why: String,
+    /// Whether the other conditions leave the prediction open: that speaks against no model.
+    #[serde(skip)]
+    pub(crate) is_open: bool,
 }
 
 /// Which of two models fails.
@@ -44,7 +47,28 @@ const OPEN: f64 = 5.0;
 pub(super) type Pair = (usize, Predicted, Predicted);
 
 /// A condition as a model predicts it, or why it does not.
-pub(super) type Attempt = Result<Predicted, String>;
+pub(super) type Attempt = Result<Predicted, Unpredicted>;
+
+/// Why a model does not predict a condition.
+pub(super) enum Unpredicted {
+    /// It cannot be integrated.
+    Fails(String),
+    /// The conditions that are left say too little of it.
+    Open(&'static str),
+}
+
+impl Unpredicted {
+    fn is_open(&self) -> bool {
+        matches!(self, Self::Open(_))
+    }
+
+    fn why(self) -> String {
+        match self {
+            Self::Fails(why) => why,
+            Self::Open(why) => why.to_owned(),
+        }
+    }
+}
 
 /// Those of `conditions` that were predicted both before and after, with both predictions; and the others.
 pub(super) fn in_both(
@@ -65,7 +89,8 @@ pub(super) fn in_both(
             (Err(why), Err(_)) => (Fails::Both, why),
         };
         let condition = observed.conditions[condition].id.clone();
-        others.push(NotPredicted { condition, by, why });
+        let is_open = why.is_open();
+        others.push(NotPredicted { condition, by, why: why.why(), is_open });
     }
     (both, others)
 }
@@ -105,7 +130,7 @@ impl Predicted {
         };
         let attempt = |&condition: &usize| match one(condition) {
             Ok(predicted) => Ok(Ok(predicted)),
-            Err(FitError::Predict(error)) => Ok(Err(error.why)),
+            Err(FitError::Predict(error)) => Ok(Err(Unpredicted::Fails(error.why))),
             Err(other) => Err(other),
         };
         conditions.iter().map(attempt).collect()
@@ -130,17 +155,17 @@ impl Predicted {
             let slope = jacobian.rows(start, rows).into_owned();
             start += rows;
             if noisy.weights.len() == 1 {
-                predicted.push(Err("no other condition is fitted to".to_owned()));
+                predicted.push(Err(Unpredicted::Open("no other condition is fitted to")));
                 continue;
             }
             let Some(others) = told_apart(&all - slope.tr_mul(&slope), &all) else {
-                predicted.push(Err("it alone fixes a parameter".to_owned()));
+                predicted.push(Err(Unpredicted::Open("it alone fixes a parameter")));
                 continue;
             };
             let covariance = &slope * others.solve(&slope.transpose());
             let open = covariance.trace() / rows.max(1) as f64;
             if open > OPEN * OPEN {
-                predicted.push(Err("the other conditions say too little of it".to_owned()));
+                predicted.push(Err(Unpredicted::Open("the other conditions say too little of it")));
                 continue;
             }
             let step = others.solve(&(&pull - slope.tr_mul(&own)));
@@ -219,7 +244,7 @@ mod tests {
         let observed = Observed::of(&set(Kind::Scalar, conditions, runs));
         let predicted =
             |log_density| Ok(Predicted { error: DVector::zeros(1), log_density, open: 0.0 });
-        let fails = || Err("it never stops".to_owned());
+        let fails = || Err(Unpredicted::Fails("it never stops".to_owned()));
         let before = vec![predicted(-1.0), predicted(-20.0), fails()];
         let after = vec![predicted(-2.0), fails(), fails()];
         let (both, others) = in_both(&observed, &[0, 1, 2], before, after);

@@ -390,11 +390,16 @@ struct Numbers<'a> {
     choice: &'a Choice,
     first: Option<&'a Choice>,
     least: Vec<f64>,
+    greatest: Vec<f64>,
 }
 
 impl Numbers<'_> {
     fn with(&self, numbers: &[f64]) -> Option<Choice> {
-        if numbers.iter().zip(&self.least).any(|(number, least)| number < least) {
+        let mut ranges = self.least.iter().zip(&self.greatest);
+        let is_outside = |number: &f64| {
+            ranges.next().is_some_and(|(least, most)| !(least..=most).contains(&number))
+        };
+        if numbers.iter().any(is_outside) {
             return None;
         }
         let last = self.choice.terms.last()?;
@@ -423,7 +428,9 @@ fn search(response: &Response, choice: Choice, first: Option<&Choice>) -> Choice
         return choice;
     }
     let least = start.iter().map(|number| LEAST * number).collect();
-    let numbers = Numbers { response, choice: &choice, first, least };
+    let states: Vec<State> = response.states().flatten().copied().collect();
+    let greatest = choice.terms.last().map_or_else(Vec::new, |term| term.greatest(&states));
+    let numbers = Numbers { response, choice: &choice, first, least, greatest };
     let mut simplex = vec![start.clone()];
     for at in 0..start.len() {
         let mut corner = start.clone();

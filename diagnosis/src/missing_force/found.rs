@@ -24,6 +24,7 @@ const HALVINGS: usize = 3;
 const SETTLED: f64 = 0.02;
 
 /// The force as a process, around itself: answers to a force depend on the force that is there.
+#[derive(Clone, Debug)]
 pub(super) struct Found {
     pub(super) field: Field,
     pub(super) fit: Fit,
@@ -76,30 +77,36 @@ impl Found {
     ) -> Result<Option<Self>, FitError> {
         let whole: DVector<f64> =
             &self.process.mean - DVector::from_column_slice(&self.field.values);
+        let around = |share: f64| {
+            let values = self.field.values.iter().zip(whole.iter());
+            let values = values.map(|(at, by)| at + share * by).collect();
+            Field { grid: self.field.grid.clone(), values }
+        };
         let mut share = 1.0;
         for _ in 0..HALVINGS {
-            let step = &whole * share;
-            let values = self.field.values.iter().zip(step.iter()).map(|(at, by)| at + by);
-            let field = Field { grid: self.field.grid.clone(), values: values.collect() };
+            let field = around(share);
             let with = WithField { forward: problem.forward, field: Arc::new(field.clone()) };
             let data = Data { forward: &with, ..problem.data(&baseline.weights) };
             // The parameters that fit best beside this force, to first order.
-            let left = &self.fit.residual - self.response.change(&step);
+            let left = &self.fit.residual - self.response.change(&(&whole * share));
             let Some(point) = self.fit.moved(&left, &data.scales(&self.fit.point)) else {
                 return Ok(None);
             };
-            let fits = data.residual(&point).is_ok_and(|left| left.norm_squared() < self.fit.chi2);
-            // Where they do not, they are searched.
-            let fit = match fits {
-                true => Some(data.as_listed_at(point)?),
-                false => data.fit_as_listed(&self.fit.point).ok(),
-            };
-            if let Some(fit) = fit.filter(|fit| fit.chi2 < self.fit.chi2) {
+            if data.residual(&point).is_ok_and(|left| left.norm_squared() < self.fit.chi2) {
+                let fit = data.as_listed_at(point)?;
                 return Self::around(problem, by, (baseline, fit), field);
             }
             share *= 0.5;
         }
-        Ok(None)
+        // Where none does, parameters are searched beside the smallest part.
+        let field = around(share);
+        let with = WithField { forward: problem.forward, field: Arc::new(field.clone()) };
+        let data = Data { forward: &with, ..problem.data(&baseline.weights) };
+        let fit = data.fit_as_listed(&self.fit.point).ok();
+        match fit.filter(|fit| fit.chi2 < self.fit.chi2) {
+            Some(fit) => Self::around(problem, by, (baseline, fit), field),
+            None => Ok(None),
+        }
     }
 
     /// How far the force on each condition lies from the one that all share.

@@ -41,9 +41,6 @@ use crate::rounding::{six_digits, six_digits_or_null};
 /// The file with the force along the paths.
 pub const FILE: &str = "missing_force.csv";
 
-/// Standard errors to either side that 95 % of normal numbers lie within.
-const TWO_SIDED_95: f64 = 1.96;
-
 /// Misfit, in units of the noise, from which a force is looked for once more around the best formula, and how often.
 const FAR: f64 = 1.5;
 const AGAIN: usize = 3;
@@ -100,7 +97,7 @@ pub struct MissingForce {
     pub fitted: Option<Fitted>,
 }
 
-/// What `baseline` lacks; `fall` is the fall of the deviance by the best listed effect. `None` of models that take no force
+/// What `baseline` lacks; `best` are the log odds of the best listed effect against none. `None` of models that take no force
 /// beside their own, and where nothing can be told: the verdict does not need it.
 ///
 /// # Errors
@@ -108,23 +105,80 @@ pub struct MissingForce {
 pub fn missing_force(
     problem: &FitProblem<'_>,
     baseline: &Fitted,
-    fall: Option<f64>,
+    best: Option<f64>,
 ) -> Result<Option<MissingForce>, FitError> {
-    if_told(with_band(problem, baseline, fall))
+    let any = any_force(problem, baseline)?;
+    any.map_or(Ok(None), |any| described(problem, baseline, (any, best)))
+}
+
+/// A force of any form on the bodies of a model, and the noise under which it is most likely.
+#[derive(Clone, Debug)]
+pub(crate) struct AnyForce {
+    under: Fitted,
+    found: Found,
+}
+
+impl AnyForce {
+    /// Logarithm of the odds of it against none in the model of `baseline`.
+    pub(crate) fn log_odds(&self, baseline: &Fitted) -> f64 {
+        self.found.evidence(&self.under) + 0.5 * baseline.deviance()
+    }
+
+    /// Whether its band leaves out zero somewhere on the paths of the bodies.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub(crate) fn is_clear(
+        &self,
+        problem: &FitProblem<'_>,
+        baseline: &Fitted,
+    ) -> Result<bool, FitError> {
+        let Some(through) = problem.forward.passages() else { return Ok(false) };
+        let between = self.under.noise.sessions.sd;
+        let readings = table::readings(problem, through, (&self.found, baseline), between)?;
+        Ok(readings.iter().any(Reading::is_clear))
+    }
+}
+
+/// The most likely force of any form on the bodies of the model of `baseline`; `None` of models that take no force beside
+/// their own, and where nothing can be told.
+///
+/// # Errors
+/// If predictions do not have the layout of the measurements.
+pub(crate) fn any_force(
+    problem: &FitProblem<'_>,
+    baseline: &Fitted,
+) -> Result<Option<AnyForce>, FitError> {
+    let Some(through) = problem.forward.passages() else { return Ok(None) };
+    if_told(most_likely(problem, through, baseline))
+}
+
+/// What `any` force is, in a formula and in words; `best` are the log odds of the best listed effect against none.
+///
+/// # Errors
+/// If predictions do not have the layout of the measurements.
+pub(crate) fn described(
+    problem: &FitProblem<'_>,
+    baseline: &Fitted,
+    (any, best): (AnyForce, Option<f64>),
+) -> Result<Option<MissingForce>, FitError> {
+    if_told(with_band(problem, baseline, (any, best)))
 }
 
 fn with_band(
     problem: &FitProblem<'_>,
     baseline: &Fitted,
-    fall: Option<f64>,
+    (any, best): (AnyForce, Option<f64>),
 ) -> Result<Option<MissingForce>, FitError> {
     let Some(through) = problem.forward.passages() else { return Ok(None) };
-    let Some((under, found)) = most_likely(problem, through, baseline)? else { return Ok(None) };
+    let AnyForce { under, found } = any;
     let (found, formula) = match problem.forward.by_formulas() {
         Some(by) => with_formula(problem, by, baseline, (&under, found))?,
         None => (found, None),
     };
-    let readings = table::readings(problem, through, (&found, baseline), under.noise.sessions.sd)?;
+    let any = AnyForce { under, found };
+    let AnyForce { under, found } = &any;
+    let readings = table::readings(problem, through, (found, baseline), under.noise.sessions.sd)?;
     let band = in_words(&readings);
     Ok(Some(MissingForce {
         file: FILE,
@@ -138,8 +192,8 @@ fn with_band(
             .as_ref()
             .and_then(|one| one.fitted.fit.standard_error(one.fitted.fit.point.parameters.len())),
         holdout: formula.as_ref().map(|one| one.holdout.clone()),
-        log_odds: odds(&under, &found, baseline),
-        log_odds_of_best_effect: fall.map(|fall| 0.5 * fall),
+        log_odds: any.log_odds(baseline),
+        log_odds_of_best_effect: best,
         parameters: formula
             .as_ref()
             .map_or_else(Map::new, |one| parameters(problem.forward, &one.fitted.fit)),
@@ -151,31 +205,12 @@ fn with_band(
     }))
 }
 
-/// Logarithm of the odds of some force against none; `None` of models that take no force beside their own, and where nothing
-/// can be told.
-///
-/// # Errors
-/// If predictions do not have the layout of the measurements.
-pub(crate) fn log_odds(
-    problem: &FitProblem<'_>,
-    baseline: &Fitted,
-) -> Result<Option<f64>, FitError> {
-    let Some(through) = problem.forward.passages() else { return Ok(None) };
-    let found = if_told(most_likely(problem, through, baseline))?;
-    Ok(found.map(|(under, found)| odds(&under, &found, baseline)))
-}
-
 /// What is `found`; none if the model fails.
 fn if_told<T>(found: Result<Option<T>, FitError>) -> Result<Option<T>, FitError> {
     match found {
         Err(FitError::Predict(_) | FitError::Singular { .. }) => Ok(None),
         other => other,
     }
-}
-
-/// Logarithm of the odds of the force `found` under the noise of `under` against none.
-fn odds(under: &Fitted, found: &Found, baseline: &Fitted) -> f64 {
-    found.evidence(under) + 0.5 * baseline.deviance()
 }
 
 /// The best formula for the force that was `found` under the noise of `under`, and the force around it, where that is
@@ -231,7 +266,7 @@ fn most_likely(
     problem: &FitProblem<'_>,
     by: &dyn Passages,
     baseline: &Fitted,
-) -> Result<Option<(Fitted, Found)>, FitError> {
+) -> Result<Option<AnyForce>, FitError> {
     let look = |under: Fitted, is_sideways: bool| -> Result<Option<(Fitted, Found)>, FitError> {
         let grid = response::grid(problem, is_sideways);
         let nothing = Field { values: vec![0.0; grid.len()], grid };
@@ -265,7 +300,8 @@ fn most_likely(
         let found = found.settled(problem, by, &under)?;
         settled.push((under, found));
     }
-    Ok(settled.into_iter().max_by(|a, b| evidence(a).total_cmp(&evidence(b))))
+    let best = settled.into_iter().max_by(|a, b| evidence(a).total_cmp(&evidence(b)));
+    Ok(best.map(|(under, found)| AnyForce { under, found }))
 }
 
 /// What the bodies go through.
@@ -289,7 +325,7 @@ fn in_words(readings: &[Reading]) -> String {
     let against = against_in_words(readings);
     let clearest = |of: fn(&Reading) -> Option<Component>| {
         let all = readings.iter().filter_map(|one| Some((one, of(one)?)));
-        let clear = all.filter(|(_, part)| part.clarity() > TWO_SIDED_95);
+        let clear = all.filter(|(_, part)| part.is_clear());
         clear.max_by(|a, b| a.1.clarity().total_cmp(&b.1.clarity()))
     };
     let told = |name: &str, (at, part): (&Reading, Component)| {
@@ -316,11 +352,10 @@ fn in_words(readings: &[Reading]) -> String {
 /// Where the band of the force against the motion leaves out zero, in a sentence.
 fn against_in_words(readings: &[Reading]) -> String {
     let reach = readings.iter().map(|one| one.depth).fold(0.0, f64::max);
-    let is_clear = |one: &&Reading| one.force.abs() > TWO_SIDED_95 * one.se;
     let clearest = (0..PARTS).filter_map(|part| {
         let inside = |one: &&Reading| {
             let share = PARTS as f64 * one.depth / reach;
-            (part as f64..part as f64 + 1.0).contains(&share) && is_clear(one)
+            (part as f64..part as f64 + 1.0).contains(&share) && one.is_clear()
         };
         readings.iter().filter(inside).max_by(|a, b| a.clarity().total_cmp(&b.clarity()))
     });

@@ -27,13 +27,13 @@ const LONG: [f64; 4] = [2.0; 4];
 const OWN: f64 = 1e-6;
 
 /// Variance, relative to that of the noise, below which a direction carries no information.
-const NOTHING: f64 = 1e-8;
+const NOTHING: f64 = 1e-5;
 
 /// Settings less likely by this logarithm than the best do not count.
 const NEGLIGIBLE: f64 = 8.0;
 
 /// What measurements say of the force at the nodes, in units of ρ g A D.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Process {
     /// By node of the grid; nothing where no path comes near.
     pub(super) mean: DVector<f64>,
@@ -46,7 +46,7 @@ pub(super) struct Process {
 }
 
 /// What a process follows from.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Told {
     /// Of forces of size 1 at the nodes that some path comes near, by lengths.
     covariances: Vec<DMatrix<f64>>,
@@ -238,16 +238,49 @@ fn lengths(angles: &[f64], diameters: &[f64]) -> Vec<[f64; 4]> {
 
 /// The covariance of a force of size 1, whose component against the motion says nothing of that normal to it.
 pub(super) fn alike(places: &[Scaled], lengths: [f64; 4]) -> DMatrix<f64> {
+    let axes: [Axis; 4] = std::array::from_fn(|axis| Axis::of(places, axis, lengths[axis]));
     DMatrix::from_fn(places.len(), places.len(), |a, b| {
         if places[a].is_sideways != places[b].is_sideways {
             return 0.0;
         }
-        let alike = |lengths: [f64; 4]| {
-            let apart = |axis: usize| (places[a].at[axis] - places[b].at[axis]) / lengths[axis];
-            libm::exp(-0.5 * (0..4).map(|axis| apart(axis).powi(2)).sum::<f64>())
-        };
-        0.5 * (alike(lengths) + alike(LONG)) + if a == b { OWN } else { 0.0 }
+        let start = if a == b { OWN } else { 0.0 };
+        let [own, long] = axes.iter().fold([0.5; 2], |[own, long], axis| {
+            let [near, far] = axis.alike(a, b);
+            [own * near, long * far]
+        });
+        start + own + long
     })
+}
+
+/// How alike forces are for their distance along one axis: a grid has few coordinates, and a covariance many entries.
+struct Axis {
+    /// Of each place, which of the distinct coordinates it has.
+    coordinate: Vec<usize>,
+    /// By pairs of coordinates, over the length that is tried and over the long one.
+    alike: Vec<[f64; 2]>,
+    n: usize,
+}
+
+impl Axis {
+    fn of(places: &[Scaled], axis: usize, length: f64) -> Self {
+        let mut distinct: Vec<f64> = places.iter().map(|place| place.at[axis]).collect();
+        distinct.sort_by(f64::total_cmp);
+        distinct.dedup_by(|a, b| a.total_cmp(b).is_eq());
+        let at = |place: &Scaled| distinct.partition_point(|one| *one < place.at[axis]);
+        let pairs = distinct.iter().flat_map(|a| distinct.iter().map(move |b| a - b));
+        let alike = pairs.map(|apart| {
+            [length, LONG[axis]].map(|length| libm::exp(-0.5 * (apart / length).powi(2)))
+        });
+        Self {
+            coordinate: places.iter().map(at).collect(),
+            alike: alike.collect(),
+            n: distinct.len(),
+        }
+    }
+
+    fn alike(&self, a: usize, b: usize) -> [f64; 2] {
+        self.alike[self.coordinate[a] * self.n + self.coordinate[b]]
+    }
 }
 
 /// What follows from a force of `size`; `inner` is the covariance that one of size 1 gives what is seen, `values`.

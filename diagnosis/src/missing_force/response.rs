@@ -60,6 +60,7 @@ fn spaced(from: f64, to: f64, n: usize) -> Vec<f64> {
 }
 
 /// The answer of all that was fitted to, whitened, and what of it no parameter of the model imitates.
+#[derive(Clone, Debug)]
 pub(super) struct Response {
     /// By fitted condition.
     blocks: Vec<Block>,
@@ -75,6 +76,7 @@ pub(super) struct Response {
 }
 
 /// The answer of one condition.
+#[derive(Clone, Debug)]
 struct Block {
     /// The nodes that its path comes near, in rising order.
     nodes: Vec<usize>,

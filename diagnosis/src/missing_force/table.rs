@@ -9,7 +9,7 @@ use super::apart::Apart;
 use super::found::{Found, MOMENTS};
 use crate::fit::Fit;
 use crate::fit_problem::{FitProblem, Fitted};
-use crate::forward::{Moment, Passages, PredictError, Request, Scatter, sense};
+use crate::forward::{Moment, NORMAL_95, Passages, PredictError, Request, Scatter, sense};
 
 /// Share of a velocity along the surface from which on a force normal to the motion is given: none acts on a vertical fall.
 const OBLIQUE: f64 = 0.1;
@@ -56,6 +56,11 @@ impl Component {
     pub(super) fn clarity(&self) -> f64 {
         self.force.abs() / self.se.max(f64::MIN_POSITIVE)
     }
+
+    /// Whether its 95 % interval leaves out zero.
+    pub(super) fn is_clear(&self) -> bool {
+        self.clarity() > NORMAL_95
+    }
 }
 
 impl Reading {
@@ -67,6 +72,11 @@ impl Reading {
     /// How clear of zero it is, in standard deviations.
     pub(super) fn clarity(&self) -> f64 {
         self.force.abs() / self.se.max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether its 95 % interval leaves out zero.
+    pub(super) fn is_clear(&self) -> bool {
+        self.clarity() > NORMAL_95
     }
 }
 

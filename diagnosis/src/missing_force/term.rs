@@ -180,6 +180,20 @@ impl Factor {
         }
     }
 
+    /// The greatest that each of them may be: no state is beyond a place that is deeper than all `states`.
+    fn greatest(self, states: &[State]) -> Vec<f64> {
+        let deepest = |unit: Length| {
+            let depths = states.iter().map(|state| state.depth / unit.size(state.diameter));
+            depths.fold(f64::MIN_POSITIVE, f64::max)
+        };
+        match self {
+            Self::Layer { unit, .. } | Self::Below { unit, .. } | Self::Above { unit, .. } => {
+                vec![deepest(unit), f64::INFINITY]
+            }
+            _ => vec![f64::INFINITY; self.numbers().len()],
+        }
+    }
+
     /// With other numbers, as many as [`Self::numbers`] gives.
     fn with(self, numbers: &[f64]) -> Self {
         match (self, numbers) {
@@ -225,6 +239,11 @@ impl Term {
     /// The numbers of its form that are searched.
     pub(super) fn numbers(&self) -> Vec<f64> {
         self.0.iter().flat_map(|factor| factor.numbers()).collect()
+    }
+
+    /// The greatest that each of them may be where there are only `states`.
+    pub(super) fn greatest(&self, states: &[State]) -> Vec<f64> {
+        self.0.iter().flat_map(|factor| factor.greatest(states)).collect()
     }
 
     /// With other numbers, as many as [`Self::numbers`] gives.

@@ -24,6 +24,10 @@ impl Forward for WithField<'_> {
         self.forward.n_scattering_coefficients()
     }
 
+    fn within(&self) -> Option<&dyn Forward> {
+        Some(self.forward)
+    }
+
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
         let scatter = Scatter { field: Some(Arc::clone(&self.field)), ..at.scatter.clone() };
         self.forward.predict(condition, &Request { scatter: &scatter, ..*at })

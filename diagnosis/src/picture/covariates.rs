@@ -5,9 +5,9 @@ use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, padded, short, svg};
 use plotters::prelude::*;
 
-use super::TWO_SIDED_95;
 use crate::covariate::{self, Covariate};
 use crate::force_error::{ForceError, Trend};
+use crate::forward::NORMAL_95;
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).
@@ -83,7 +83,7 @@ fn draw_panel(area: &Area<'_>, covariate: Covariate, all: &[Series<'_>]) -> Draw
     let low = errors().fold(f64::INFINITY, |low, error| low.min(error.from));
     let high = errors().fold(f64::NEG_INFINITY, |high, error| high.max(error.to));
     let highest = errors().fold(0.0_f64, |highest, error| {
-        highest.max(error.force_error.abs() + TWO_SIDED_95 * error.se)
+        highest.max(error.force_error.abs() + NORMAL_95 * error.se)
     });
     let across = padded(low, high);
     let shift = (across.end - across.start) / 60.0;
@@ -98,7 +98,7 @@ fn draw_panel(area: &Area<'_>, covariate: Covariate, all: &[Series<'_>]) -> Draw
         let beside = shift * (at as f64 - 0.5 * (all.len() - 1) as f64);
         for error in &series.errors {
             let middle = 0.5 * (error.from + error.to) + beside;
-            let (y, half) = (100.0 * error.force_error, 100.0 * TWO_SIDED_95 * error.se);
+            let (y, half) = (100.0 * error.force_error, 100.0 * NORMAL_95 * error.se);
             let bars = [
                 vec![(middle, y - half), (middle, y + half)],
                 vec![(error.from, y), (error.to, y)],

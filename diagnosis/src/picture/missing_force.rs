@@ -5,8 +5,8 @@ use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, fitting, letters, padded, svg};
 use plotters::prelude::*;
 
-use super::TWO_SIDED_95;
 use super::panel::framed;
+use crate::forward::NORMAL_95;
 use crate::missing_force::{Component, Reading};
 
 /// Size of a panel (pixels), and panels side by side.
@@ -64,7 +64,7 @@ fn pale(index: usize) -> RGBColor {
 fn draw(area: &Area<'_>, name: &str, readings: &[&Reading]) -> Drawn {
     area.draw(&Text::new(fitting(name, PANEL.0 - 60), (52, 5), letters()))?;
     let deepest = readings.iter().map(|one| 1e3 * one.depth).fold(1e-3, f64::max);
-    let ends = |part: Component| [-1.0, 1.0].map(|side| part.force + side * TWO_SIDED_95 * part.se);
+    let ends = |part: Component| [-1.0, 1.0].map(|side| part.force + side * NORMAL_95 * part.se);
     let all = readings.iter().flat_map(|one| one.components().into_iter().flatten().flat_map(ends));
     let (least, most) =
         all.fold((0.0_f64, 1e-9_f64), |(least, most), x| (least.min(x), most.max(x)));

@@ -6,7 +6,7 @@ use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, fitting, letters, padded, short, svg};
 use plotters::prelude::*;
 
-use super::TWO_SIDED_95;
+use crate::forward::NORMAL_95;
 use crate::observable::Observable;
 use crate::residual::Residual;
 use crate::where_it_fails::WhereItFails;
@@ -118,7 +118,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let title = fitting(&panel.title, PANEL.0 - 50);
     area.draw(&Text::new(title, (46, 5), letters()))?;
     let numbers = panel.lines.iter().flat_map(|(_, line)| line).chain(&panel.points);
-    let band = panel.band.iter().map(|(t, se)| (*t, TWO_SIDED_95 * se));
+    let band = panel.band.iter().map(|(t, se)| (*t, NORMAL_95 * se));
     let most =
         numbers.copied().chain(band.clone()).fold(1e-6, |most: f64, (_, y)| most.max(y.abs()));
     let [across, up] = panel.axes;

@@ -5,8 +5,8 @@ use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, LETTER, PictureError, colour, fitting, letters, svg, upright};
 use plotters::prelude::*;
 
-use super::TWO_SIDED_95;
 use super::multiples::{self, Panel, Track, tracks};
+use crate::forward::NORMAL_95;
 use crate::observable::Observable;
 use crate::residual::Residual;
 use crate::where_it_fails::{Signature, WhereItFails};
@@ -133,7 +133,7 @@ impl Scalars<'_> {
     fn draw(&self, area: &Area<'_>, residuals: &[Residual], signatures: &[Signature]) -> Drawn {
         area.draw(&Text::new(self.title, (52, 8), letters()))?;
         let left = |place: usize| 1e3 * (residuals[place].measured - residuals[place].predicted);
-        let half = |place: usize| 1e3 * TWO_SIDED_95 * residuals[place].standard_error;
+        let half = |place: usize| 1e3 * NORMAL_95 * residuals[place].standard_error;
         let change = |signature: &Signature, place: usize| 1e3 * signature.change[place];
         let mut most = 1e-6_f64;
         for &(_, place) in self.numbers {
@@ -172,7 +172,7 @@ impl Scalars<'_> {
                 "{}\nmeasured less predicted {:+.2} \u{b1} {:.2}",
                 self.names[condition],
                 left(place),
-                half(place) / TWO_SIDED_95
+                half(place) / NORMAL_95
             );
             chart.draw_series([Hover::at((x, left(place)), text)])?;
         }

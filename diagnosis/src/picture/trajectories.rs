@@ -6,8 +6,8 @@ use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, svg};
 use plotters::prelude::*;
 
-use super::TWO_SIDED_95;
 use super::multiples::{Track, tracks};
+use crate::forward::NORMAL_95;
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).
@@ -77,7 +77,7 @@ impl Row {
         let errors = track.band(measured);
         let axes @ [across, up, change] = track.axes();
         let band = path.iter().zip(errors).map(|(&(t, y), (_, se))| {
-            let half = TWO_SIDED_95 * se;
+            let half = NORMAL_95 * se;
             (across.scale * t, up.scale * (y - half), up.scale * (y + half))
         });
         let drawn = |line: Line, up: Axis| -> Line {

@@ -62,6 +62,10 @@ impl Forward for Extended<'_> {
         self.model.n_scattering_coefficients()
     }
 
+    fn within(&self) -> Option<&dyn Forward> {
+        Some(self.model)
+    }
+
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
         let n = self.model.effects.len();
         let find = |index: usize| match index.checked_sub(n) {

@@ -29,6 +29,9 @@ use crate::observable::{Layout, Observable};
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
 const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
 
+/// A force between nodes has kinks, at which steps are the shorter the smaller the errors are.
+const OF_FIELD: Tolerance = Tolerance { relative: 1e-6, absolute: 1e-8 };
+
 /// Angles closer than this (rad) are one.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -474,8 +477,9 @@ impl Prepared {
             true => Box::new(Driven::new(made.assembly)),
             false => made.assembly,
         };
+        let tolerance = if scatter.field.is_some() { OF_FIELD } else { TOLERANCE };
         Impact::new(assembly, laws, self.bed, made.start)
-            .with_tolerance(TOLERANCE)
+            .with_tolerance(tolerance)
             .with_effort(EFFORT)
     }
 }

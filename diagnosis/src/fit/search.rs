@@ -1,0 +1,192 @@
+//! The search of a fit, with derivatives that are kept where they hold.
+//!
+//! Derivatives by differences cost one prediction of the set for each unknown; a step of the search costs one. Derivatives are
+//! therefore corrected by what a step did (Broyden 1965, Math. Comp. 19, 577), and taken anew where they foresaw too little
+//! of it.
+
+use std::cell::RefCell;
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
+use rayon::prelude::*;
+
+use super::scale::Scale;
+use super::{Data, TOLERANCE};
+use crate::sensitivity::Point;
+
+/// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
+const PATIENCE: usize = 30;
+
+/// Longest first step, in units of the distance from zero: a longer one leaves where derivatives hold, and logarithms
+/// do not come back.
+const FIRST_STEP: f64 = 1.0;
+
+/// By how much what cannot be integrated misses, in units of the best that was tried: the search turns back from it
+/// and takes a tenth of the step.
+const REFUSED: f64 = 1e3;
+
+/// Share of what a step did that derivatives may miss and are corrected; they are taken anew where they miss more.
+const MISSED: f64 = 0.2;
+
+/// Derivatives by the unknowns of a search, known where it came by.
+#[derive(Clone)]
+pub(super) struct Known {
+    /// The unknowns of the fit that are searched.
+    free: Vec<usize>,
+    /// All unknowns where the derivatives are known.
+    unknowns: Vec<f64>,
+    residual: DVector<f64>,
+    /// Of the residual, a column for each unknown that is searched.
+    slopes: DMatrix<f64>,
+    /// How far the search has come since differences were taken, in standard deviations of the prediction.
+    pub(super) moved: f64,
+}
+
+impl Known {
+    /// By `unknowns` that are searched only: `None` where others are too.
+    fn by(&self, free: &[usize]) -> Option<Self> {
+        let place = |at: &usize| self.free.iter().position(|known| known == at);
+        let columns: Vec<usize> = free.iter().map(place).collect::<Option<_>>()?;
+        Some(Self {
+            free: free.to_vec(),
+            slopes: self.slopes.select_columns(&columns),
+            ..self.clone()
+        })
+    }
+
+    /// The derivative of the residual by unknown `at`.
+    pub(super) fn slope(&self, at: usize) -> Option<DVector<f64>> {
+        let column = self.free.iter().position(|known| *known == at)?;
+        Some(self.slopes.column(column).into_owned())
+    }
+
+    /// At `unknowns` with this `residual`, corrected by the way there; `None` where it was not foreseen.
+    pub(super) fn after(&self, unknowns: &[f64], residual: &DVector<f64>) -> Option<Self> {
+        let change = self.free.iter().map(|&at| unknowns[at] - self.unknowns[at]);
+        let change = DVector::from_iterator(self.free.len(), change);
+        let did = residual - &self.residual;
+        let foreseen = &self.slopes * &change;
+        let missed = &did - &foreseen;
+        if !missed.iter().all(|one| one.is_finite()) || missed.norm() > MISSED * did.norm() {
+            return None;
+        }
+        let mut slopes = self.slopes.clone();
+        // In units in which each unknown moves the prediction by one standard deviation.
+        let sizes = self.slopes.column_iter().map(|column| column.norm_squared());
+        let scaled = DVector::from_iterator(change.len(), sizes).component_mul(&change);
+        let length = scaled.dot(&change);
+        if length > 0.0 {
+            slopes += missed * scaled.transpose() / length;
+        }
+        let moved = self.moved + did.norm();
+        let (unknowns, residual) = (unknowns.to_vec(), residual.clone());
+        Some(Self { free: self.free.clone(), unknowns, residual, slopes, moved })
+    }
+}
+
+/// The search of the unknowns that are not held.
+pub(super) struct Search<'a> {
+    data: &'a Data<'a>,
+    scales: &'a [Scale],
+    free: Vec<usize>,
+    like: &'a Point,
+    unknowns: Vec<f64>,
+    /// χ² and unknowns of the best that was tried.
+    best: RefCell<(f64, Vec<f64>)>,
+    known: RefCell<Option<Known>>,
+}
+
+impl<'a> Search<'a> {
+    /// Of what is not `held`, from `unknowns`, with derivatives that are `known`, if any are.
+    pub(super) fn new(
+        (data, like): (&'a Data<'a>, &'a Point),
+        (scales, held): (&'a [Scale], &[bool]),
+        unknowns: Vec<f64>,
+        known: Option<&Known>,
+    ) -> Self {
+        let free: Vec<usize> = (0..held.len()).filter(|&at| !held[at]).collect();
+        let known = RefCell::new(known.and_then(|known| known.by(&free)));
+        let best = RefCell::new((f64::INFINITY, unknowns.clone()));
+        Self { data, scales, free, like, unknowns, best, known }
+    }
+
+    /// The best unknowns that were tried, since the search may end where the model cannot be integrated, and the
+    /// derivatives where they are known last.
+    pub(super) fn minimum(self) -> (Vec<f64>, Option<Known>) {
+        let solver = LevenbergMarquardt::new()
+            .with_ftol(TOLERANCE)
+            .with_xtol(TOLERANCE)
+            .with_patience(PATIENCE)
+            .with_stepbound(FIRST_STEP);
+        let (search, _) = solver.minimize(self);
+        let (_, unknowns) = search.best.into_inner();
+        (unknowns, search.known.into_inner())
+    }
+
+    fn differences(&self, here: &DVector<f64>) -> DMatrix<f64> {
+        let Self { data, scales, like, unknowns, .. } = self;
+        let column = |&at: &usize| {
+            // Inwards from the upper end of a range, where a step outwards changes nothing.
+            let step = scales[at].unknown_step();
+            let step = if scales[at].contains(unknowns[at] + step) { step } else { -step };
+            let moved = |by: f64| {
+                let mut unknowns = unknowns.clone();
+                unknowns[at] += by;
+                data.residual_at(&unknowns, scales, like)
+            };
+            let forth = moved(step).map(|there| (there - here) / step);
+            let slope = forth.or_else(|| moved(-step).map(|there| (here - there) / step));
+            slope.unwrap_or_else(|| here * 0.0)
+        };
+        let columns: Vec<_> = self.free.par_iter().map(column).collect();
+        DMatrix::from_columns(&columns)
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, free: &DVector<f64>) {
+        for (&at, unknown) in self.free.iter().zip(free.iter()) {
+            self.unknowns[at] = *unknown;
+        }
+    }
+
+    fn params(&self) -> DVector<f64> {
+        DVector::from_iterator(self.free.len(), self.free.iter().map(|&at| self.unknowns[at]))
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        let mut best = self.best.borrow_mut();
+        let Self { data, scales, like, unknowns, .. } = self;
+        let Some(residual) = data.residual_at(unknowns, scales, like) else {
+            let rows = self.data.rows();
+            let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
+            return size.is_finite().then(|| DVector::from_element(rows, size));
+        };
+        let chi2 = residual.norm_squared();
+        if chi2 < best.0 {
+            *best = (chi2, self.unknowns.clone());
+        }
+        Some(residual)
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let here = self.data.residual_at(&self.unknowns, self.scales, self.like)?;
+        let mut known = self.known.borrow_mut();
+        let after = known.take().and_then(|known| known.after(&self.unknowns, &here));
+        let now = after.unwrap_or_else(|| Known {
+            free: self.free.clone(),
+            unknowns: self.unknowns.clone(),
+            slopes: self.differences(&here),
+            residual: here,
+            moved: 0.0,
+        });
+        let slopes = now.slopes.clone();
+        *known = Some(now);
+        Some(slopes)
+    }
+}
