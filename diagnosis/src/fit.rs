@@ -15,7 +15,7 @@ use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 pub(crate) use scale::{Scale, point_of, unknowns, value, value_mut};
-use search::{Known, Search};
+use search::{Derivatives, Known, Search};
 
 /// Where the search ends: relative change of χ² and of the unknowns.
 const TOLERANCE: f64 = 1e-6;
@@ -26,9 +26,8 @@ const RELEASES: usize = 10;
 /// Standard deviations of the prediction over which a search may come and leave its derivatives as they are.
 const NEAR: f64 = 0.5;
 
-/// Share of χ² by which a search has to gain to be repeated with derivatives that are taken anew, and how often it is.
-const GOES_ON: f64 = 1e-4;
-const FRESH: usize = 3;
+/// The same over which a search may come with corrected derivatives and end there.
+const AT_REST: f64 = 0.02;
 
 /// Standard deviations of its prior beyond which an error of the apparatus is strained: a fit that takes it there may make
 /// up for what the model lacks.
@@ -48,6 +47,15 @@ pub struct Data<'a> {
     pub conditions: &'a [usize],
     /// One per condition of `conditions`, in that order.
     pub weights: &'a [Weight],
+}
+
+/// How far a search goes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Until {
+    /// As far as kept derivatives lead: another search begins there.
+    Near,
+    /// To the minimum.
+    Minimum,
 }
 
 /// Whitened derivatives of a prediction that are known, by unknown.
@@ -180,7 +188,7 @@ impl Data<'_> {
         let forms = self.forms(&start).into_iter().enumerate();
         let held = forms.map(|(at, is_form)| is_form || is_apparatus(at)).collect();
         // It is where other searches begin.
-        let (point, mut held, known) = self.search(&start, &scales, held, 0)?;
+        let (point, mut held, known) = self.search(&start, &scales, (held, Until::Near))?;
         held.iter_mut().enumerate().for_each(|(at, held)| *held &= !is_apparatus(at));
         let own = columns(known.as_ref(), &point, &scales);
         self.result(point.clone(), (&scales, &held), &|at| {
@@ -231,51 +239,43 @@ impl Data<'_> {
         scales: &[Scale],
         held: Vec<bool>,
     ) -> Result<Fit, PredictError> {
-        let (point, at_end, known) = self.search(start, scales, held, FRESH)?;
+        let (point, at_end, known) = self.search(start, scales, (held, Until::Minimum))?;
         let known = columns(known.as_ref(), &point, scales);
         self.result(point.clone(), (scales, &at_end), &known)
     }
 
-    /// Searches what is not `held` from `start`; gives the best, what is held there, since it is at a bound, and the
-    /// derivatives that are known there. It is repeated up to `rounds_left` times with derivatives that are taken anew.
+    /// Searches what is not `held` from `start`, as far as `until`; gives the best, what is held there, since it is at a
+    /// bound, and the derivatives that are known there.
     fn search(
         &self,
         start: &Point,
         scales: &[Scale],
-        mut held: Vec<bool>,
-        mut rounds_left: usize,
+        (mut held, until): (Vec<bool>, Until),
     ) -> Result<(Point, Vec<bool>, Option<Known>), PredictError> {
         let mut best = self.residual(start)?.norm_squared();
         let mut point = start.clone();
-        let (mut known, mut is_repeated) = (None, false);
+        let (mut known, mut derivatives) = (None, Derivatives::Kept);
         let fixed = held.clone();
         for _ in 0..=RELEASES {
-            point = self.descend(start, point, (scales, &mut held), &mut known);
+            let from = best;
+            point = self.descend((start, point), (scales, &mut held), (&mut known, derivatives));
             let residual = self.residual(&point)?;
-            let chi2 = residual.norm_squared();
+            best = residual.norm_squared();
             known = known.and_then(|known| known.after(&unknowns(&point, scales), &residual));
-            let gain = best - chi2;
-            if gain <= TOLERANCE * best && !is_repeated {
-                break;
-            }
-            best = chi2;
-            let is_near = known.as_ref().is_some_and(|known| known.moved <= NEAR);
-            let goes_on = gain > GOES_ON * best && rounds_left > 0;
-            if !is_near && goes_on && held.contains(&false) {
-                // Derivatives that were corrected on the way may end a search too early.
+            let is_known = known.as_ref().is_some_and(|known| known.moved <= AT_REST);
+            if derivatives == Derivatives::Kept && !is_known && until == Until::Minimum {
+                derivatives = Derivatives::Anew;
                 known = None;
-                rounds_left -= 1;
-                is_repeated = true;
                 continue;
             }
             let inward = (0..scales.len()).filter(|&at| held[at] && !fixed[at]);
             let inward: Vec<usize> =
-                inward.filter(|&at| self.falls_inward(&point, scales, at, chi2)).collect();
-            if inward.is_empty() {
+                inward.filter(|&at| self.falls_inward(&point, scales, at, best)).collect();
+            let gains = from - best > TOLERANCE * from || derivatives == Derivatives::Anew;
+            if inward.is_empty() || !gains {
                 break;
             }
             inward.into_iter().for_each(|at| held[at] = false);
-            is_repeated = false;
         }
         Ok((point, held, known))
     }
@@ -293,14 +293,13 @@ impl Data<'_> {
     /// Searches what is not `held` from `point`, and holds what ends outside its range.
     fn descend(
         &self,
-        start: &Point,
-        mut point: Point,
+        (start, mut point): (&Point, Point),
         (scales, held): (&[Scale], &mut [bool]),
-        known: &mut Option<Known>,
+        (known, derivatives): (&mut Option<Known>, Derivatives),
     ) -> Point {
         while held.contains(&false) {
-            let from = unknowns(&point, scales);
-            let search = Search::new((self, start), (scales, held), from, known.as_ref());
+            let from = (unknowns(&point, scales), known.as_ref());
+            let search = Search::new((self, start), (scales, held), from, derivatives);
             let (unknowns, at_end) = search.minimum();
             *known = at_end;
             point = point_of(&unknowns, scales, start);

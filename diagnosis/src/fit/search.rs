@@ -29,6 +29,18 @@ const REFUSED: f64 = 1e3;
 /// Share of what a step did that derivatives may miss and are corrected; they are taken anew where they miss more.
 const MISSED: f64 = 0.2;
 
+/// Share of the residual that a step may change, likewise: far from the minimum, corrected derivatives lead elsewhere.
+const SMALL: f64 = 0.3;
+
+/// What a search does with derivatives after a step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Derivatives {
+    /// It corrects them by what the step did.
+    Kept,
+    /// It takes them anew: corrected ones may end it in a narrow valley, on the way to the minimum.
+    Anew,
+}
+
 /// Derivatives by the unknowns of a search, known where it came by.
 #[derive(Clone)]
 pub(super) struct Known {
@@ -68,7 +80,8 @@ impl Known {
         let did = residual - &self.residual;
         let foreseen = &self.slopes * &change;
         let missed = &did - &foreseen;
-        if !missed.iter().all(|one| one.is_finite()) || missed.norm() > MISSED * did.norm() {
+        let is_foreseen = missed.norm() <= MISSED * did.norm();
+        if !is_foreseen || did.norm() > SMALL * self.residual.norm() {
             return None;
         }
         let mut slopes = self.slopes.clone();
@@ -95,20 +108,21 @@ pub(super) struct Search<'a> {
     /// χ² and unknowns of the best that was tried.
     best: RefCell<(f64, Vec<f64>)>,
     known: RefCell<Option<Known>>,
+    derivatives: Derivatives,
 }
 
 impl<'a> Search<'a> {
-    /// Of what is not `held`, from `unknowns`, with derivatives that are `known`, if any are.
+    /// Of what is not `held`, from `unknowns`, with the derivatives that are `known` there, if any are.
     pub(super) fn new(
         (data, like): (&'a Data<'a>, &'a Point),
         (scales, held): (&'a [Scale], &[bool]),
-        unknowns: Vec<f64>,
-        known: Option<&Known>,
+        (unknowns, known): (Vec<f64>, Option<&Known>),
+        derivatives: Derivatives,
     ) -> Self {
         let free: Vec<usize> = (0..held.len()).filter(|&at| !held[at]).collect();
         let known = RefCell::new(known.and_then(|known| known.by(&free)));
         let best = RefCell::new((f64::INFINITY, unknowns.clone()));
-        Self { data, scales, free, like, unknowns, best, known }
+        Self { data, scales, free, like, unknowns, best, known, derivatives }
     }
 
     /// The best unknowns that were tried, since the search may end where the model cannot be integrated, and the
@@ -178,6 +192,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
         let here = self.data.residual_at(&self.unknowns, self.scales, self.like)?;
         let mut known = self.known.borrow_mut();
         let after = known.take().and_then(|known| known.after(&self.unknowns, &here));
+        let after = after.filter(|now| self.derivatives == Derivatives::Kept || now.moved <= 0.0);
         let now = after.unwrap_or_else(|| Known {
             free: self.free.clone(),
             unknowns: self.unknowns.clone(),
