@@ -15,10 +15,7 @@ use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 pub(crate) use scale::{Scale, point_of, unknowns, value, value_mut};
-use search::{Derivatives, Known, Search};
-
-/// Where the search ends: relative change of χ² and of the unknowns.
-const TOLERANCE: f64 = 1e-6;
+use search::{Derivatives, Known, Residual, Search, TOLERANCE};
 
 /// How often what is held at bounds is set free: a step too long leaves a range that the best fit is in.
 const RELEASES: usize = 10;
@@ -47,6 +44,24 @@ pub struct Data<'a> {
     pub conditions: &'a [usize],
     /// One per condition of `conditions`, in that order.
     pub weights: &'a [Weight],
+}
+
+/// The residual of `data` by unknowns, at points like `like`.
+struct ByUnknowns<'a> {
+    data: &'a Data<'a>,
+    scales: &'a [Scale],
+    like: &'a Point,
+}
+
+impl Residual for ByUnknowns<'_> {
+    fn at(&self, unknowns: &[f64]) -> Option<DVector<f64>> {
+        let residual = self.data.residual(&point_of(unknowns, self.scales, self.like)).ok()?;
+        residual.iter().all(|r| r.is_finite()).then_some(residual)
+    }
+
+    fn rows(&self) -> usize {
+        self.data.rows()
+    }
 }
 
 /// How far a search goes.
@@ -168,8 +183,8 @@ impl Data<'_> {
     }
 
     /// Fits `candidate` as listed from where parameters start, without what another fit has found and with the apparatus
-    /// as it is stated; the derivatives by errors of the apparatus are those of `near`, a fit to the same measurements under the
-    /// same weights. A search by all of them from there may end
+    /// as it is stated. The derivatives by errors of the apparatus are those of `near`, a fit to the same measurements under
+    /// the same weights. A search by all of them from there may end
     /// where errors of the apparatus make up for a law.
     ///
     /// # Errors
@@ -255,7 +270,7 @@ impl Data<'_> {
         let mut best = self.residual(start)?.norm_squared();
         let mut point = start.clone();
         let (mut known, mut derivatives) = (None, Derivatives::Kept);
-        let fixed = held.clone();
+        let (fixed, mut is_released) = (held.clone(), false);
         for _ in 0..=RELEASES {
             let from = best;
             point = self.descend((start, point), (scales, &mut held), (&mut known, derivatives));
@@ -271,11 +286,12 @@ impl Data<'_> {
             let inward = (0..scales.len()).filter(|&at| held[at] && !fixed[at]);
             let inward: Vec<usize> =
                 inward.filter(|&at| self.falls_inward(&point, scales, at, best)).collect();
-            let gains = from - best > TOLERANCE * from || derivatives == Derivatives::Anew;
-            if inward.is_empty() || !gains {
+            let gains = from - best > TOLERANCE * from;
+            if inward.is_empty() || (is_released && !gains) {
                 break;
             }
             inward.into_iter().for_each(|at| held[at] = false);
+            is_released = true;
         }
         Ok((point, held, known))
     }
@@ -299,7 +315,8 @@ impl Data<'_> {
     ) -> Point {
         while held.contains(&false) {
             let from = (unknowns(&point, scales), known.as_ref());
-            let search = Search::new((self, start), (scales, held), from, derivatives);
+            let residual = ByUnknowns { data: self, scales, like: start };
+            let search = Search::new(&residual, (scales, held), from, derivatives);
             let (unknowns, at_end) = search.minimum();
             *known = at_end;
             point = point_of(&unknowns, scales, start);
@@ -337,17 +354,6 @@ impl Data<'_> {
             parameter.prior.map(|prior| (prior.mean - value) / prior.sigma)
         }));
         Ok(DVector::from_vec(residual))
-    }
-
-    /// The same at `unknowns`; none where it cannot be integrated, or is not finite.
-    fn residual_at(
-        &self,
-        unknowns: &[f64],
-        scales: &[Scale],
-        like: &Point,
-    ) -> Option<DVector<f64>> {
-        let residual = self.residual(&point_of(unknowns, scales, like)).ok()?;
-        residual.iter().all(|r| r.is_finite()).then_some(residual)
     }
 
     /// How many numbers were measured: rows of a residual, before those of priors.

@@ -12,8 +12,9 @@ use nalgebra::{DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
 use super::scale::Scale;
-use super::{Data, TOLERANCE};
-use crate::sensitivity::Point;
+
+/// Where the search ends: relative change of χ² and of the unknowns.
+pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
 const PATIENCE: usize = 30;
@@ -98,12 +99,20 @@ impl Known {
     }
 }
 
+/// What a fit leaves over, by its unknowns.
+pub(super) trait Residual: Sync {
+    /// Whitened measured less predicted; none where the model cannot be integrated, or gives no finite numbers.
+    fn at(&self, unknowns: &[f64]) -> Option<DVector<f64>>;
+
+    /// How many numbers that are.
+    fn rows(&self) -> usize;
+}
+
 /// The search of the unknowns that are not held.
 pub(super) struct Search<'a> {
-    data: &'a Data<'a>,
+    residual: &'a dyn Residual,
     scales: &'a [Scale],
     free: Vec<usize>,
-    like: &'a Point,
     unknowns: Vec<f64>,
     /// χ² and unknowns of the best that was tried.
     best: RefCell<(f64, Vec<f64>)>,
@@ -114,7 +123,7 @@ pub(super) struct Search<'a> {
 impl<'a> Search<'a> {
     /// Of what is not `held`, from `unknowns`, with the derivatives that are `known` there, if any are.
     pub(super) fn new(
-        (data, like): (&'a Data<'a>, &'a Point),
+        residual: &'a dyn Residual,
         (scales, held): (&'a [Scale], &[bool]),
         (unknowns, known): (Vec<f64>, Option<&Known>),
         derivatives: Derivatives,
@@ -122,7 +131,7 @@ impl<'a> Search<'a> {
         let free: Vec<usize> = (0..held.len()).filter(|&at| !held[at]).collect();
         let known = RefCell::new(known.and_then(|known| known.by(&free)));
         let best = RefCell::new((f64::INFINITY, unknowns.clone()));
-        Self { data, scales, free, like, unknowns, best, known, derivatives }
+        Self { residual, scales, free, unknowns, best, known, derivatives }
     }
 
     /// The best unknowns that were tried, since the search may end where the model cannot be integrated, and the
@@ -139,7 +148,7 @@ impl<'a> Search<'a> {
     }
 
     fn differences(&self, here: &DVector<f64>) -> DMatrix<f64> {
-        let Self { data, scales, like, unknowns, .. } = self;
+        let Self { residual, scales, unknowns, .. } = self;
         let column = |&at: &usize| {
             // Inwards from the upper end of a range, where a step outwards changes nothing.
             let step = scales[at].unknown_step();
@@ -147,7 +156,7 @@ impl<'a> Search<'a> {
             let moved = |by: f64| {
                 let mut unknowns = unknowns.clone();
                 unknowns[at] += by;
-                data.residual_at(&unknowns, scales, like)
+                residual.at(&unknowns)
             };
             let forth = moved(step).map(|there| (there - here) / step);
             let slope = forth.or_else(|| moved(-step).map(|there| (here - there) / step));
@@ -175,9 +184,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
 
     fn residuals(&self) -> Option<DVector<f64>> {
         let mut best = self.best.borrow_mut();
-        let Self { data, scales, like, unknowns, .. } = self;
-        let Some(residual) = data.residual_at(unknowns, scales, like) else {
-            let rows = self.data.rows();
+        let Some(residual) = self.residual.at(&self.unknowns) else {
+            let rows = self.residual.rows();
             let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
             return size.is_finite().then(|| DVector::from_element(rows, size));
         };
@@ -189,7 +197,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let here = self.data.residual_at(&self.unknowns, self.scales, self.like)?;
+        let here = self.residual.at(&self.unknowns)?;
         let mut known = self.known.borrow_mut();
         let after = known.take().and_then(|known| known.after(&self.unknowns, &here));
         let after = after.filter(|now| self.derivatives == Derivatives::Kept || now.moved <= 0.0);
@@ -203,5 +211,39 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
         let slopes = now.slopes.clone();
         *known = Some(now);
         Some(slopes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The second unknown moves the second row by 2 for each unit, the derivatives say 1.9.
+    fn known() -> Known {
+        Known {
+            free: vec![0, 2],
+            unknowns: vec![1.0, 7.0, 1.0],
+            residual: DVector::from_vec(vec![10.0, 10.0]),
+            slopes: DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 1.9]),
+            moved: 0.0,
+        }
+    }
+
+    #[test]
+    fn derivatives_that_foresaw_a_step_are_corrected_to_say_what_it_did() {
+        let there = DVector::from_vec(vec![10.0, 11.0]);
+        let now = known().after(&[1.0, 7.0, 1.5], &there).expect("a step that was foreseen");
+        assert!((now.slopes[(1, 1)] - 2.0).abs() < 1e-12 && (now.moved - 1.0).abs() < 1e-12);
+        assert!((now.slopes[(0, 0)] - 1.0).abs() < 1e-12, "the other unknown stood still");
+        let told = now.slope(2).expect("an unknown that is searched");
+        assert!((told[1] - 2.0).abs() < 1e-12 && now.slope(1).is_none());
+    }
+
+    #[test]
+    fn derivatives_are_forgotten_by_steps_that_they_did_not_foresee_and_by_long_ones() {
+        let unforeseen = DVector::from_vec(vec![10.0, 9.5]);
+        assert!(known().after(&[1.0, 7.0, 1.5], &unforeseen).is_none());
+        let far = DVector::from_vec(vec![10.0, 19.5]);
+        assert!(known().after(&[1.0, 7.0, 6.0], &far).is_none());
     }
 }

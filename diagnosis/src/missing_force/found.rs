@@ -77,14 +77,14 @@ impl Found {
     ) -> Result<Option<Self>, FitError> {
         let whole: DVector<f64> =
             &self.process.mean - DVector::from_column_slice(&self.field.values);
-        let around = |share: f64| {
+        let field = |share: f64| {
             let values = self.field.values.iter().zip(whole.iter());
             let values = values.map(|(at, by)| at + share * by).collect();
             Field { grid: self.field.grid.clone(), values }
         };
         let mut share = 1.0;
         for _ in 0..HALVINGS {
-            let field = around(share);
+            let field = field(share);
             let with = WithField { forward: problem.forward, field: Arc::new(field.clone()) };
             let data = Data { forward: &with, ..problem.data(&baseline.weights) };
             // The parameters that fit best beside this force, to first order.
@@ -99,7 +99,7 @@ impl Found {
             share *= 0.5;
         }
         // Where none does, parameters are searched beside the smallest part.
-        let field = around(share);
+        let field = field(share);
         let with = WithField { forward: problem.forward, field: Arc::new(field.clone()) };
         let data = Data { forward: &with, ..problem.data(&baseline.weights) };
         let fit = data.fit_as_listed(&self.fit.point).ok();
