@@ -339,7 +339,7 @@ impl Judge<'_> {
     /// The verdict none-of-the-candidates, or below-noise if the model misses held-out conditions by little more than
     /// their noise.
     fn refuse(&self, grounds: Grounds) -> Result<Diagnosis, FitError> {
-        let held_out = HeldOut::judging(self.problem, &self.baseline, &self.baseline)?;
+        let held_out = HeldOut::of(self.problem, &self.baseline, &self.baseline)?;
         let is_small = held_out.is_above_noise() == Some(false);
         let verdict = match is_small && self.problem.forward.is_judged_by_held_out() {
             true => Verdict::BelowNoise,
