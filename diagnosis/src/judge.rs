@@ -209,11 +209,6 @@ impl Judge<'_> {
             return Ok(None);
         }
         let odds = self.of_any_force()?.filter(|odds| *odds >= MORE_THAN_SESSIONS);
-        let Some(Some(any)) = self.any_force.get() else { return Ok(None) };
-        // A force whose band holds zero everywhere says no more than that conditions differ.
-        if odds.is_none() || !any.is_clear(self.problem, &self.baseline)? {
-            return Ok(None);
-        }
         Ok(odds.map(|odds| {
             format!(
                 "conditions differ by more than their repeats show, and a force that depends on speed, angle or body \

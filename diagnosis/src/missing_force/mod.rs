@@ -123,21 +123,6 @@ impl AnyForce {
     pub(crate) fn log_odds(&self, baseline: &Fitted) -> f64 {
         self.found.evidence(&self.under) + 0.5 * baseline.deviance()
     }
-
-    /// Whether its band leaves out zero somewhere on the paths of the bodies.
-    ///
-    /// # Errors
-    /// If the model fails.
-    pub(crate) fn is_clear(
-        &self,
-        problem: &FitProblem<'_>,
-        baseline: &Fitted,
-    ) -> Result<bool, FitError> {
-        let Some(through) = problem.forward.passages() else { return Ok(false) };
-        let between = self.under.noise.sessions.sd;
-        let readings = table::readings(problem, through, (&self.found, baseline), between)?;
-        Ok(readings.iter().any(Reading::is_clear))
-    }
 }
 
 /// The most likely force of any form on the bodies of the model of `baseline`; `None` of models that take no force beside
