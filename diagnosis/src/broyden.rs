@@ -6,7 +6,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::fit::{Data, Fit, Scale, point_of, unknowns, value};
+use crate::fit::{Data, Fit, Scale, correct, point_of, unknowns, value};
 use crate::sensitivity::Point;
 
 /// A step that promises a smaller share of the fall of χ² so far, and of one, ends the search.
@@ -164,11 +164,8 @@ impl Search {
         let change = self.free.iter().zip(&self.units);
         let change = change.map(|(&at, unit)| (there[at] - self.unknowns[at]) / unit);
         let change = DVector::from_iterator(self.free.len(), change);
-        let length = change.norm_squared();
-        if length > 0.0 {
-            let missed = did - &self.jacobian * &change;
-            self.jacobian += missed * change.transpose() / length;
-        }
+        let missed = did - &self.jacobian * &change;
+        correct(&mut self.jacobian, &missed, (&change, &change));
     }
 
     fn standard_error(&self) -> Option<f64> {

@@ -15,6 +15,7 @@ use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 pub(crate) use scale::{Scale, point_of, unknowns, value, value_mut};
+pub(crate) use search::correct;
 use search::{Derivatives, Known, Residual, Search, TOLERANCE};
 
 /// How often what is held at bounds is set free: a step too long leaves a range that the best fit is in.

@@ -22,3 +22,11 @@ pub(super) fn of_runs(
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     all.get(all.len() / 2).copied()
 }
+
+/// From the standard deviation of a normal number to the median of its size.
+const MEDIAN_OF_SIZE: f64 = 0.6745;
+
+/// The standard deviation of normal numbers of these `sizes`, by their median; zero where none is finite.
+pub(super) fn deviation_of(sizes: &[f64]) -> f64 {
+    median(sizes.iter().copied().filter(|size| size.is_finite())).unwrap_or(0.0) / MEDIAN_OF_SIZE
+}

@@ -3,7 +3,7 @@
 //! No model is used. All runs of a set read their scalars by the same rule, so the ratio of a scalar to what the frames show
 //! is the same in all of them, but for scatter.
 
-use crate::median::median;
+use crate::median::{deviation_of, median};
 use crate::{Frame, MeasurementSet, Run};
 
 /// Fewest runs that say what is usual.
@@ -19,14 +19,12 @@ const SHARE: f64 = 0.25;
 const AT_THE_END: usize = 6;
 const AT_REST: f64 = 0.15;
 
-/// From a standard deviation to the median of a size.
-const MEDIAN_OF_SIZE: f64 = 0.6745;
-
 /// A scalar of a run, and what its frames show instead.
 struct Scalar {
     key: &'static str,
     unit: &'static str,
-    value: fn(&mut Run) -> &mut Option<f64>,
+    value: fn(&Run) -> Option<f64>,
+    take: fn(&mut Run) -> Option<f64>,
     seen: fn(&Run) -> Option<f64>,
     /// Smallest deviation of the logarithm that is no scatter.
     least: f64,
@@ -36,14 +34,16 @@ const SCALARS: [Scalar; 2] = [
     Scalar {
         key: "final_z",
         unit: "m",
-        value: |run| &mut run.final_z,
+        value: |run| run.final_z,
+        take: |run| run.final_z.take(),
         seen: |run| Some(deepest(run)?.z),
         least: 0.5,
     },
     Scalar {
         key: "stop_time",
         unit: "s",
-        value: |run| &mut run.stop_time,
+        value: |run| run.stop_time,
+        take: |run| run.stop_time.take(),
         seen: |run| Some(deepest(run)?.t),
         least: 1.0,
     },
@@ -73,7 +73,7 @@ impl Scalar {
         let mut notes = Vec::new();
         for at in mistyped {
             let run = &mut set.runs[at];
-            let Some(value) = (self.value)(run).take() else { continue };
+            let Some(value) = (self.take)(run) else { continue };
             let (key, unit, name) = (self.key, self.unit, &run.name);
             let shown = match (by_frames[at], by_runs[at]) {
                 (Some(seen), _) => format!("where its frames show {seen:.4} {unit}"),
@@ -94,7 +94,7 @@ impl Scalar {
     fn by_condition(&self, set: &MeasurementSet) -> Vec<Option<f64>> {
         let median_of = |condition: usize| {
             let own = set.runs.iter().filter(|run| run.condition == condition);
-            let own: Vec<f64> = own.filter_map(|run| *(self.value)(&mut run.clone())).collect();
+            let own: Vec<f64> = own.filter_map(self.value).collect();
             (own.len() > 2).then(|| median(own)).flatten()
         };
         let medians: Vec<Option<f64>> = (0..set.conditions.len()).map(median_of).collect();
@@ -104,14 +104,14 @@ impl Scalar {
     /// The runs whose scalar is far from what is `expected`, by the ratio that is usual.
     fn mistyped(&self, set: &MeasurementSet, expected: &[Option<f64>]) -> Vec<usize> {
         let ratio = |(at, run): (usize, &Run)| {
-            let value = (*(self.value)(&mut run.clone()))?;
+            let value = (self.value)(run)?;
             let expected = expected[at].filter(|expected| *expected > 0.0)?;
             Some((at, libm::log((value / expected).max(f64::MIN_POSITIVE))))
         };
         let ratios: Vec<(usize, f64)> = set.runs.iter().enumerate().filter_map(ratio).collect();
         let Some(usual) = median(ratios.iter().map(|one| one.1)) else { return Vec::new() };
         let off = |one: &(usize, f64)| (one.1 - usual).abs();
-        let scatter = median(ratios.iter().map(off)).unwrap_or(0.0) / MEDIAN_OF_SIZE;
+        let scatter = deviation_of(&ratios.iter().map(off).collect::<Vec<_>>());
         let limit = self.least.max(APART * scatter);
         let far = ratios.iter().filter(|one| off(one) > limit);
         let far: Vec<usize> = far.map(|one| one.0).collect();

@@ -3,7 +3,7 @@
 //! No model is used. A frame is compared with what the frames before it, after it and on both sides predict; a run, with
 //! the median of the runs of its condition.
 
-use crate::median::median;
+use crate::median::{deviation_of, median};
 use crate::{Frame, MeasurementSet, Run, stray_scalars};
 
 /// Fewest frames of a run that is searched for strays.
@@ -35,9 +35,6 @@ const FEWEST_RUNS: usize = 3;
 
 /// A run is mistracked if its distance from the median, relative to the depth, exceeds the usual one by this factor.
 const APART: f64 = 8.0;
-
-/// From a standard deviation to the median of a size.
-const MEDIAN: f64 = 0.6745;
 
 /// What a set without its strays says, and what was left out of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,7 +161,7 @@ fn stray_readings(track: &[[f64; 2]], error: f64) -> Vec<bool> {
 fn seen_at_once(track: &[[f64; 2]], error: f64, with_ends: bool) -> Vec<bool> {
     let n = track.len();
     let misses: Vec<f64> = (0..n).map(|at| least_miss(track, at)).collect();
-    let noise = usual(&misses).max(error);
+    let noise = deviation_of(&misses).max(error);
     let mut suspects = vec![false; n];
     for at in (0..n).filter(|&at| misses[at] > 0.5 * FAR * noise) {
         suspects[around(at, n)].fill(true);
@@ -278,11 +275,6 @@ fn is_on_the_way(track: &[[f64; 2]], at: usize) -> bool {
     (before.min(*after)..=before.max(*after)).contains(&track[at][1])
 }
 
-/// The standard deviation of which `sizes` are, by their median.
-fn usual(sizes: &[f64]) -> f64 {
-    median(sizes.iter().copied().filter(|size| size.is_finite())).unwrap_or(0.0) / MEDIAN
-}
-
 /// By how much the reading `at` misses the best of what its neighbours promise: parabolas through three on either
 /// side, and a line between the two beside it.
 fn least_miss(track: &[[f64; 2]], at: usize) -> f64 {
@@ -323,7 +315,7 @@ fn jumps_in(track: &[[f64; 2]], error: f64) -> bool {
     let backward = |at: usize, to: usize| miss([at + 1, at + 2, at + 3], to);
     let sizes: Vec<f64> = (3..n).map(|at| forward(at, at).abs()).collect();
     // A parabola through three readings misses the next by √20 of their error.
-    let limit = FAR * usual(&sizes).max(error * 20.0_f64.sqrt());
+    let limit = FAR * deviation_of(&sizes).max(error * 20.0_f64.sqrt());
     let is_offset =
         |near: f64, far: f64| near.abs() > limit && (far - near).abs() < 0.5 * near.abs();
     (3..n - 4).any(|at| {
@@ -347,7 +339,7 @@ fn apart(set: &MeasurementSet, error: f64) -> Vec<usize> {
         distances.extend(from_the_middle(set, &runs, error));
     }
     let sizes: Vec<f64> = distances.iter().map(|(_, size)| *size).collect();
-    let limit = APART * usual(&sizes);
+    let limit = APART * deviation_of(&sizes);
     distances.into_iter().filter(|(_, size)| *size > limit).map(|(run, _)| run).collect()
 }
 

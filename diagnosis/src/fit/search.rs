@@ -89,13 +89,23 @@ impl Known {
         // In units in which each unknown moves the prediction by one standard deviation.
         let sizes = self.slopes.column_iter().map(|column| column.norm_squared());
         let scaled = DVector::from_iterator(change.len(), sizes).component_mul(&change);
-        let length = scaled.dot(&change);
-        if length > 0.0 {
-            slopes += missed * scaled.transpose() / length;
-        }
+        correct(&mut slopes, &missed, (&change, &scaled));
         let moved = self.moved + did.norm();
         let (unknowns, residual) = (unknowns.to_vec(), residual.clone());
         Some(Self { free: self.free.clone(), unknowns, residual, slopes, moved })
+    }
+}
+
+/// Corrects derivatives that `missed` a part of what a `change` of the unknowns did, so that they say all of it (Broyden 1965).
+/// `scaled` is the change in units in which the unknowns count alike.
+pub(crate) fn correct(
+    slopes: &mut DMatrix<f64>,
+    missed: &DVector<f64>,
+    (change, scaled): (&DVector<f64>, &DVector<f64>),
+) {
+    let length = scaled.dot(change);
+    if length > 0.0 {
+        *slopes += missed * scaled.transpose() / length;
     }
 }
 
