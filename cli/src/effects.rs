@@ -6,7 +6,7 @@ use configs::{describe_range, nearest};
 use contact_laws::{ActsOn, Candidacy, Candidate, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry};
 use engine::grains::Space;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamDefault, ParamSpec, Range};
 use engine::units::format_si;
 use resistive::{Confounder, OtherForm, RESISTANCE_LAWS, ResistanceEntry, Role, confounders};
 use serde_json::{Value, json};
@@ -326,13 +326,15 @@ fn as_text(law: &Described) -> String {
 
 fn default_text(spec: &ParamSpec) -> String {
     match spec.default {
-        Default::Required => match spec.dimension.si_unit() {
+        ParamDefault::Required => match spec.dimension.si_unit() {
             unit if unit.is_empty() => "required, a pure number".to_owned(),
             unit => format!("required, in {unit}"),
         },
-        Default::Value(value) => format!("default {}", format_si(value, spec.dimension)),
-        Default::SameAs(key) => format!("default: {key}"),
-        Default::FromBase(key) => format!("default: {key} of the contact law, which must have it"),
+        ParamDefault::Value(value) => format!("default {}", format_si(value, spec.dimension)),
+        ParamDefault::SameAs(key) => format!("default: {key}"),
+        ParamDefault::FromBase(key) => {
+            format!("default: {key} of the contact law, which must have it")
+        }
     }
 }
 
@@ -388,12 +390,12 @@ fn parameter_json(spec: &ParamSpec) -> Value {
         "key": spec.key,
         "meaning": spec.meaning,
         "unit": spec.dimension.si_unit(),
-        "required": spec.default == Default::Required,
+        "required": spec.default == ParamDefault::Required,
         "default": match spec.default {
-            Default::Value(value) => json!(value),
-            Default::SameAs(key) => json!(key),
-            Default::FromBase(key) => json!(format!("contact_law.{key}")),
-            Default::Required => Value::Null,
+            ParamDefault::Value(value) => json!(value),
+            ParamDefault::SameAs(key) => json!(key),
+            ParamDefault::FromBase(key) => json!(format!("contact_law.{key}")),
+            ParamDefault::Required => Value::Null,
         },
         "allowed": range_json(spec.allowed),
         "plausible": range_json(spec.plausible),

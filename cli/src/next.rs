@@ -14,7 +14,8 @@ pub(crate) fn as_text(next: &Next, object: &Value) -> String {
         return match feasible.is_empty() {
             true => "\nNEXT  no feasible condition can be predicted by the model.\n".to_owned(),
             false => format!(
-                "\nNothing feasible would tell them apart: the best condition is expected to tell {most:.2} of {open_bits:.2} bit.\n"
+                "\nNothing feasible would tell them apart: the best condition is expected to tell {most:.2} of {open_bits:.2} bit. Wider \
+                 limits in `[feasible]`, another body or more runs of each condition may.\n"
             ),
         };
     };

@@ -2,7 +2,7 @@
 
 use engine::contact::Partner;
 use engine::lanes::Lanes;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamDefault, ParamSpec, ParamTable, Range};
 
 use crate::hertz::{self, Damping, Elastic, damping_ratio, params};
 use crate::registry::{ActsOn, LawEntry};
@@ -75,7 +75,7 @@ const PARAMS: &[ParamSpec] = &params::with_two_more(
     params::specs(
         RESTITUTION,
         ParamSpec {
-            default: Default::Value(1.0),
+            default: ParamDefault::Value(1.0),
             meaning: "factor on the viscous part of the tangential force; 0 leaves friction alone",
             ..params::TANGENTIAL_DAMPING
         },

@@ -2,7 +2,7 @@
 
 use engine::contact::Partner;
 use engine::lanes::Lanes;
-use engine::params::{Default, ParamSpec, ParamTable};
+use engine::params::{ParamDefault, ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use crate::hertz::{self, Damping, Elastic, params};
@@ -60,7 +60,7 @@ const PARAMS: &[ParamSpec] = &params::specs(
     )
     .usual(1e-8, 1e-2),
     ParamSpec {
-        default: Default::Value(0.0),
+        default: ParamDefault::Value(0.0),
         meaning: "f, damping of shear over A k_t; 0 leaves it to friction, 1 damps it alike",
         ..params::TANGENTIAL_DAMPING
     },

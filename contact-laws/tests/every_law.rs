@@ -5,7 +5,7 @@ use engine::contact::{Contact, Encounter, Partner, Response, Slot};
 use engine::grains::Space;
 use engine::lanes::{COARSE_ERROR, Eight, Lanes, MOST_LANES, Vector, vector_of};
 use engine::math::{Quat, Vec3};
-use engine::params::{Default as Given, ParamTable};
+use engine::params::{ParamDefault, ParamTable};
 use engine::stage::{Batch, Histories};
 use engine::stage::{ContactStage, Sweep};
 
@@ -18,15 +18,15 @@ fn table(entry: &LawEntry) -> ParamTable {
         let middle = 0.5 * (spec.plausible.min + spec.plausible.max);
         let value = match spec.default {
             // The span of a stiffness is decades: its middle is the geometric one.
-            Given::Required if spec.plausible.min > 0.0 => {
+            ParamDefault::Required if spec.plausible.min > 0.0 => {
                 (spec.plausible.min * spec.plausible.max).sqrt()
             }
-            Given::Required => middle,
-            Given::Value(value) => value,
-            Given::SameAs(key) => table.get(key),
+            ParamDefault::Required => middle,
+            ParamDefault::Value(value) => value,
+            ParamDefault::SameAs(key) => table.get(key),
             // The elastic constants of a contact law.
-            Given::FromBase(key) if key.ends_with("poisson_ratio") => 0.3,
-            Given::FromBase(_) => 1e8,
+            ParamDefault::FromBase(key) if key.ends_with("poisson_ratio") => 0.3,
+            ParamDefault::FromBase(_) => 1e8,
         };
         table.set(spec.key, value);
     }
@@ -161,7 +161,7 @@ fn every_registered_law_says_what_it_is_and_where_it_comes_from() {
             for bound in [spec.plausible.min, spec.plausible.max] {
                 assert!(spec.allowed.contains(bound), "{name}.{key}: {bound} is not allowed");
             }
-            if let Given::Value(value) = spec.default {
+            if let ParamDefault::Value(value) = spec.default {
                 assert!(spec.allowed.contains(value), "{name}.{key}: {value} is not allowed");
             }
         }

@@ -7,7 +7,7 @@ use engine::contact::{Contact, Partner, Response};
 use engine::grains::Space;
 use engine::lanes::MOST_LANES;
 use engine::math::Vec3;
-use engine::params::{Default as Given, ParamTable};
+use engine::params::{ParamDefault, ParamTable};
 use engine::stage::{Batch, ContactStage, Histories};
 
 /// (kg).
@@ -27,9 +27,9 @@ fn params(entry: &LawEntry, given: &[(&str, f64)]) -> ParamTable {
     for spec in entry.params {
         let value = given.iter().find(|(key, _)| *key == spec.key).map(|(_, value)| *value);
         let value = value.unwrap_or_else(|| match spec.default {
-            Given::Value(value) => value,
-            Given::SameAs(key) => table.get(key),
-            Given::FromBase(_) | Given::Required => {
+            ParamDefault::Value(value) => value,
+            ParamDefault::SameAs(key) => table.get(key),
+            ParamDefault::FromBase(_) | ParamDefault::Required => {
                 (spec.plausible.min.max(0.1) * spec.plausible.max).sqrt()
             }
         });

@@ -4,7 +4,7 @@ use crate::units::Dimension;
 
 /// What a parameter is when the file does not give it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Default {
+pub enum ParamDefault {
     /// The file must give it.
     Required,
     /// This SI value.
@@ -55,7 +55,7 @@ pub struct ParamSpec {
     /// Its physical dimension.
     pub dimension: Dimension,
     /// What it is when not given.
-    pub default: Default,
+    pub default: ParamDefault,
     /// The values that are accepted at all (SI).
     pub allowed: Range,
     /// The values that one would expect (SI): a value outside warns.
@@ -69,7 +69,7 @@ impl ParamSpec {
     #[must_use]
     pub const fn required(key: &'static str, dimension: Dimension, meaning: &'static str) -> Self {
         let (allowed, plausible) = (Range::NOT_NEGATIVE, Range::NOT_NEGATIVE);
-        Self { key, dimension, default: Default::Required, allowed, plausible, meaning }
+        Self { key, dimension, default: ParamDefault::Required, allowed, plausible, meaning }
     }
 
     /// A pure number that the file must give, from zero on.
@@ -87,13 +87,13 @@ impl ParamSpec {
     /// The same with this value (SI) where the file gives none.
     #[must_use]
     pub const fn or(self, value: f64) -> Self {
-        Self { default: Default::Value(value), ..self }
+        Self { default: ParamDefault::Value(value), ..self }
     }
 
     /// The same with the value of `key`, of the same table, where the file gives none.
     #[must_use]
     pub const fn same_as(self, key: &'static str) -> Self {
-        Self { default: Default::SameAs(key), ..self }
+        Self { default: ParamDefault::SameAs(key), ..self }
     }
 
     /// The same with these values accepted (SI).

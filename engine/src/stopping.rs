@@ -6,7 +6,7 @@ use crate::body::Followed;
 use crate::math::Vec3;
 
 /// A speed below this share of the greatest so far counts as rest.
-const REST_SPEED: f64 = 0.05;
+pub const REST_SPEED: f64 = 0.05;
 
 /// How long (s) an intruder has to be at rest before the impact is over.
 const REST_HOLD: f64 = 0.01;

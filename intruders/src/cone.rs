@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use engine::grains::Space;
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamDefault, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 use resistive::{Compact, Silhouette};
 
@@ -64,7 +64,7 @@ const PARAMS: &[ParamSpec] = &[
     ParamSpec {
         key: "apex_angle",
         dimension: Dimension::ANGLE,
-        default: Default::Required,
+        default: ParamDefault::Required,
         // 179°: flatter, it is a plate.
         allowed: Range { min: 0.0, max: PI * 179.0 / 180.0, includes_min: false },
         plausible: Range::closed(PI / 18.0, PI * 150.0 / 180.0),

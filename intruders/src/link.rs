@@ -1,7 +1,7 @@
 //! One free link: a round rod that enters at an angle.
 
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamDefault, ParamSpec, ParamTable, Range};
 use resistive::assembly::{COORDINATES, PARTS};
 use resistive::{Assembly, Part, PartLoad, State};
 
@@ -39,7 +39,7 @@ const PARAMS: &[ParamSpec] = &[
     DIAMETER,
     link_angle(
         "link_angle",
-        Default::Value(0.0),
+        ParamDefault::Value(0.0),
         "angle of its axis to the vertical at the start; the top leans towards +x",
     ),
 ];

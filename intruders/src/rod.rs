@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use engine::grains::Space;
 use engine::math::{Vec3, Vec4};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamDefault, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 use resistive::{Immersion, Part, PartLoad};
 
@@ -15,7 +15,7 @@ use crate::outline::Draft;
 /// The angle (rad) of a link's axis to the vertical at the start.
 pub(crate) const fn link_angle(
     key: &'static str,
-    default: Default,
+    default: ParamDefault,
     meaning: &'static str,
 ) -> ParamSpec {
     ParamSpec {

@@ -1,6 +1,6 @@
 //! Two equal links on a joint without friction at their tops.
 
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamDefault, ParamSpec, Range};
 use resistive::State;
 
 use crate::chain::{Chain, angles, deeper};
@@ -38,10 +38,10 @@ const PARAMS: &[ParamSpec] = &[
     DIAMETER,
     link_angle(
         "link_angle_1",
-        Default::Required,
+        ParamDefault::Required,
         "angle of the first link to the vertical at the start; the top leans towards +x",
     ),
-    link_angle("link_angle_2", Default::Required, "the same of the second link"),
+    link_angle("link_angle_2", ParamDefault::Required, "the same of the second link"),
 ];
 
 /// The links start at rest relative to each other. The deeper tip is at the surface, the first of two

@@ -2,7 +2,7 @@
 
 use engine::grains::Space;
 use engine::math::Vec3;
-use engine::params::{Default, ParamTable};
+use engine::params::{ParamDefault, ParamTable};
 use intruders::{AssemblyRequest, Launchable, SHAPES, ShapeEntry};
 use resistive::{Immersion, State};
 
@@ -17,7 +17,7 @@ struct Example {
 fn middle(spec: &engine::params::ParamSpec, params: &ParamTable) -> f64 {
     let range = spec.plausible;
     match spec.default {
-        Default::SameAs(other) => params.get(other),
+        ParamDefault::SameAs(other) => params.get(other),
         _ if range.min < 0.0 => 0.3 * range.max,
         _ => (range.min * range.max).sqrt(),
     }

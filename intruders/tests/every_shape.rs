@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use engine::grains::Space;
 use engine::math::Vec3;
-use engine::params::{Default, ParamTable};
+use engine::params::{ParamDefault, ParamTable};
 use engine::surface::Surface;
 use intruders::{Body, Drawing, SHAPES, ShapeEntry};
 
@@ -25,9 +25,9 @@ fn params(entry: &ShapeEntry) -> ParamTable {
         params.set(
             spec.key,
             match spec.default {
-                Default::Required | Default::FromBase(_) => middle,
-                Default::Value(value) => value,
-                Default::SameAs(other) => params.get(other),
+                ParamDefault::Required | ParamDefault::FromBase(_) => middle,
+                ParamDefault::Value(value) => value,
+                ParamDefault::SameAs(other) => params.get(other),
             },
         );
     }

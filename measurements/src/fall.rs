@@ -1,7 +1,7 @@
 //! The fall before first contact, seen without knowing units, zeros or which way is down.
 
 use super::Frame;
-use super::median::median;
+use super::median::deviation_of;
 use super::reading::Reading;
 use super::smooth::{blocks, greatest_velocity, median_step, velocity_window};
 
@@ -65,9 +65,8 @@ pub fn reading_noise(frames: &[Frame]) -> f64 {
     // A body that is held or rests may be the same reading again and again.
     let moves = |four: &[Frame]| (four[3].z - four[0].z).abs() > 0.0;
     let fours = frames.windows(4).filter(|four| is_steady(four) && moves(four));
-    let median = median(fours.map(third)).unwrap_or(0.0);
-    // The median of the size of a normal number is 0.6745 deviations, a third difference has √20 of them.
-    let seen = median / 0.6745 / 20f64.sqrt();
+    // A third difference has √20 errors of a reading.
+    let seen = deviation_of(fours.map(third)) / 20f64.sqrt();
     seen.max(1e-6 * way)
 }
 

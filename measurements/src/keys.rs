@@ -158,8 +158,14 @@ pub(super) const BULK_DENSITY: ParamSpec =
     key("bulk_density", Dimension::DENSITY, POSITIVE, (0.1, 2e4), "the bulk density of the bed");
 pub(super) const AREA_DENSITY: ParamSpec =
     ParamSpec { dimension: Dimension::AREA_DENSITY, ..BULK_DENSITY };
-pub(super) const GRAVITY: ParamSpec =
-    key("gravity", Dimension::ACCELERATION, NOT_NEGATIVE, (0.0, 100.0), "gravity").or(9.81);
+pub(super) const GRAVITY: ParamSpec = key(
+    "gravity",
+    Dimension::ACCELERATION,
+    NOT_NEGATIVE,
+    (0.0, 100.0),
+    "the acceleration by gravity",
+)
+.or(9.81);
 pub(super) const GRAIN_DIAMETER: ParamSpec =
     key("grain_diameter", LENGTH, POSITIVE, (1e-6, 0.1), "the mean diameter of the grains");
 

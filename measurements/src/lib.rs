@@ -90,7 +90,7 @@ pub use fall::{Fall, reading_noise};
 pub use feasible::{Cost, Feasible};
 pub use level::{Levels, levels, misfit_of_one_level};
 pub use load::{Loaded, SetError};
-pub use median::median;
+pub use median::{deviation_of, median};
 pub use priors::ParameterPrior;
 pub use reading::Reading;
 pub use shipped::{SHIPPED_SETS, ShippedSet, find as find_shipped_set};

@@ -27,6 +27,8 @@ pub(super) fn of_runs(
 const MEDIAN_OF_SIZE: f64 = 0.6745;
 
 /// The standard deviation of normal numbers of these `sizes`, by their median; zero where none is finite.
-pub(super) fn deviation_of(sizes: &[f64]) -> f64 {
-    median(sizes.iter().copied().filter(|size| size.is_finite())).unwrap_or(0.0) / MEDIAN_OF_SIZE
+#[must_use]
+pub fn deviation_of(sizes: impl IntoIterator<Item = f64>) -> f64 {
+    let finite = sizes.into_iter().filter(|size| size.is_finite());
+    median(finite).unwrap_or(0.0) / MEDIAN_OF_SIZE
 }

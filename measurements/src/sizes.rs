@@ -1,6 +1,6 @@
 //! Sizes of the body of a condition, by the parameters of its shape.
 
-use engine::params::{Default, ParamTable};
+use engine::params::{ParamDefault, ParamTable};
 use intruders::ShapeEntry;
 
 use super::Condition;
@@ -43,9 +43,9 @@ impl Condition {
                 _ => None,
             };
             let value = match (given, spec.default) {
-                (Some(value), _) | (None, Default::Value(value)) => value,
-                (None, Default::SameAs(other)) => table.get(other),
-                (None, Default::Required | Default::FromBase(_)) => {
+                (Some(value), _) | (None, ParamDefault::Value(value)) => value,
+                (None, ParamDefault::SameAs(other)) => table.get(other),
+                (None, ParamDefault::Required | ParamDefault::FromBase(_)) => {
                     return Err(SizeError::Missing(in_sets(spec.key)));
                 }
             };

@@ -111,7 +111,7 @@ impl Scalar {
         let ratios: Vec<(usize, f64)> = set.runs.iter().enumerate().filter_map(ratio).collect();
         let Some(usual) = median(ratios.iter().map(|one| one.1)) else { return Vec::new() };
         let off = |one: &(usize, f64)| (one.1 - usual).abs();
-        let scatter = deviation_of(&ratios.iter().map(off).collect::<Vec<_>>());
+        let scatter = deviation_of(ratios.iter().map(off));
         let limit = self.least.max(APART * scatter);
         let far = ratios.iter().filter(|one| off(one) > limit);
         let far: Vec<usize> = far.map(|one| one.0).collect();

@@ -161,7 +161,7 @@ fn stray_readings(track: &[[f64; 2]], error: f64) -> Vec<bool> {
 fn seen_at_once(track: &[[f64; 2]], error: f64, with_ends: bool) -> Vec<bool> {
     let n = track.len();
     let misses: Vec<f64> = (0..n).map(|at| least_miss(track, at)).collect();
-    let noise = deviation_of(&misses).max(error);
+    let noise = deviation_of(misses.iter().copied()).max(error);
     let mut suspects = vec![false; n];
     for at in (0..n).filter(|&at| misses[at] > 0.5 * FAR * noise) {
         suspects[around(at, n)].fill(true);
@@ -315,7 +315,7 @@ fn jumps_in(track: &[[f64; 2]], error: f64) -> bool {
     let backward = |at: usize, to: usize| miss([at + 1, at + 2, at + 3], to);
     let sizes: Vec<f64> = (3..n).map(|at| forward(at, at).abs()).collect();
     // A parabola through three readings misses the next by √20 of their error.
-    let limit = FAR * deviation_of(&sizes).max(error * 20.0_f64.sqrt());
+    let limit = FAR * deviation_of(sizes.iter().copied()).max(error * 20.0_f64.sqrt());
     let is_offset =
         |near: f64, far: f64| near.abs() > limit && (far - near).abs() < 0.5 * near.abs();
     (3..n - 4).any(|at| {
@@ -339,7 +339,7 @@ fn apart(set: &MeasurementSet, error: f64) -> Vec<usize> {
         distances.extend(from_the_middle(set, &runs, error));
     }
     let sizes: Vec<f64> = distances.iter().map(|(_, size)| *size).collect();
-    let limit = APART * deviation_of(&sizes);
+    let limit = APART * deviation_of(sizes.iter().copied());
     distances.into_iter().filter(|(_, size)| *size > limit).map(|(run, _)| run).collect()
 }
 

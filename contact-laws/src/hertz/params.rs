@@ -1,7 +1,7 @@
 //! The parameters that laws on elastic constants have in common.
 
 use engine::contact::Partner;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamDefault, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 const MODULUS: ParamSpec =
@@ -59,7 +59,7 @@ pub(crate) const fn with_two_more(specs: [ParamSpec; 11], more: [ParamSpec; 2]) 
 }
 
 const fn of_base(spec: ParamSpec, key: &'static str) -> ParamSpec {
-    ParamSpec { key, default: Default::FromBase(key), ..spec }
+    ParamSpec { key, default: ParamDefault::FromBase(key), ..spec }
 }
 
 /// The factor on the viscous force in the contact plane.

@@ -1,6 +1,6 @@
 //! Tables that disagree with the others: their acceleration before contact, their axis, the height in their name.
 
-use measurements::{Reading, median};
+use measurements::{Reading, deviation_of, median};
 
 use super::begun::Begun;
 use super::motion::Path;
@@ -9,9 +9,6 @@ use super::settings::Settings;
 
 /// Smallest difference from gravity that brings a warning: relative, and in standard errors.
 const CLEAR: (f64, f64) = (0.04, 4.0);
-
-/// Median of the absolute value of a standard normal number.
-const MIDDLE: f64 = 0.6745;
 
 /// Largest number of runs that a warning names.
 const LISTED: usize = 4;
@@ -44,8 +41,7 @@ pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<St
         ));
     }
     let usual = median(falls.iter().map(|(_, fall)| fall.value))?;
-    let scatter =
-        median(falls.iter().map(|(_, fall)| (fall.value - usual).abs() / fall.se))? / MIDDLE;
+    let scatter = deviation_of(falls.iter().map(|(_, fall)| (fall.value - usual).abs() / fall.se));
     let own = |fall: &Reading| Reading { se: fall.se * scatter.max(1.0), ..*fall };
     let off = falls.iter().filter(|(_, fall)| is_off(own(fall), gravity));
     let off: Vec<String> = off.map(|(name, fall)| format!("{name} ({:.2})", fall.value)).collect();

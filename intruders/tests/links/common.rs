@@ -2,7 +2,7 @@
 
 use engine::grains::Space;
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, ParamTable};
+use engine::params::{ParamDefault, ParamSpec, ParamTable};
 use intruders::{AssemblyRequest, Launchable};
 use resistive::{Coefficients, find_resistance};
 use resistive::{Impact, ResistanceLaw, Surroundings, Tolerance};
@@ -71,8 +71,8 @@ fn fill(specs: &'static [ParamSpec], given: &[(&str, f64)]) -> ParamTable {
     for spec in specs {
         let value = given.iter().find(|(key, _)| *key == spec.key).map(|(_, value)| *value);
         let value = value.or(match spec.default {
-            Default::Value(default) => Some(default),
-            Default::Required | Default::SameAs(_) | Default::FromBase(_) => None,
+            ParamDefault::Value(default) => Some(default),
+            ParamDefault::Required | ParamDefault::SameAs(_) | ParamDefault::FromBase(_) => None,
         });
         params.set(spec.key, value.expect("every required value is given"));
     }

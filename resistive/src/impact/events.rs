@@ -10,9 +10,7 @@ use super::margin::{
 };
 use super::{Impact, Progress, State};
 use engine::math::Vec3;
-
-/// A speed below this share of the greatest so far counts as rest.
-const REST_SPEED: f64 = 0.05;
+use engine::stopping::REST_SPEED;
 
 /// A body on a curved path whose speed falls below a share of √(gD) is asked whether friction holds it; what is left of
 /// its way is covered at constant deceleration. That way goes with the square of the speed, so this is the square of the

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::ResistanceLaw;
-use engine::params::{Default, ParamSpec, ParamTable};
+use engine::params::{ParamDefault, ParamSpec, ParamTable};
 
 use super::approach::Approach;
 use super::coefficients::Coefficients;
@@ -34,7 +34,7 @@ impl Effect {
     fn with(entry: &'static ResistanceEntry, values: &[(&'static str, f64)]) -> Self {
         let mut given = ParamTable::new();
         for spec in &entry.params[1..] {
-            if let Default::Value(value) = spec.default {
+            if let ParamDefault::Value(value) = spec.default {
                 given.set(spec.key, value);
             }
         }
@@ -61,7 +61,7 @@ impl Effect {
         let Self::Listed(entry, given) = self else { return Vec::new() };
         let is_default = |key: &str, value: f64| {
             let spec = entry.params.iter().find(|spec| spec.key == key);
-            spec.is_some_and(|spec| spec.default == Default::Value(value))
+            spec.is_some_and(|spec| spec.default == ParamDefault::Value(value))
         };
         given.iter().filter(|&(key, value)| key != "q" && !is_default(key, value)).collect()
     }

@@ -2,7 +2,7 @@
 
 use crate::{Account, Flow, FrictionLimits, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamDefault, ParamSpec, Range};
 use engine::units::Dimension;
 
 use super::registry::{ResistanceEntry, Role};
@@ -38,7 +38,7 @@ struct Vertical {
 
 const fn number(
     key: &'static str,
-    default: Default,
+    default: ParamDefault,
     range: Range,
     meaning: &'static str,
 ) -> ParamSpec {
@@ -74,44 +74,44 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     params: &[
         number(
             "drag",
-            Default::Required,
+            ParamDefault::Required,
             Range::closed(0.5, 10.0),
             "eta_d, on the area that faces the motion",
         ),
-        number("horizontal", Default::Required, Range::closed(1.0, 20.0), "eta_h, horizontal"),
+        number("horizontal", ParamDefault::Required, Range::closed(1.0, 20.0), "eta_h, horizontal"),
         number(
             "plunging",
-            Default::Value(10.0),
+            ParamDefault::Value(10.0),
             Range::closed(2.0, 70.0),
             "eta_v, vertical, while sinking",
         ),
         number(
             "plunging_exponent",
-            Default::Value(1.4),
+            ParamDefault::Value(1.4),
             Range::closed(0.8, 1.8),
             "lambda, vertical, while sinking",
         ),
         number(
             "withdrawing",
-            Default::Value(0.5),
+            ParamDefault::Value(0.5),
             Range::closed(0.1, 10.0),
             "eta_v, vertical, while rising",
         ),
         number(
             "withdrawing_exponent",
-            Default::Value(1.7),
+            ParamDefault::Value(1.7),
             Range::closed(0.8, 2.5),
             "lambda, vertical, while rising",
         ),
         number(
             "depth_scale",
-            Default::Value(1.0),
+            ParamDefault::Value(1.0),
             Range::closed(0.5, 50.0),
             "the length l of the vertical law, in diameters",
         ),
         number(
             "end_face",
-            Default::Value(0.0),
+            ParamDefault::Value(0.0),
             Range::closed(0.0, 1.0),
             "share of the end's area that drags",
         ),

@@ -4,6 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
+/// Standard errors by which a sign or a difference counts, and by which a deviation may be explained.
+pub const SIGMAS: f64 = 2.0;
+
 /// What became of a comparison, or of a row: of several, the last in this order decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -2,7 +2,7 @@
 
 use engine::grains::Space;
 use engine::math::Vec3;
-use engine::params::{Default, ParamTable};
+use engine::params::{ParamDefault, ParamTable};
 use intruders::AssemblyRequest;
 use resistive::{Coefficients, Expression, find_resistance};
 use resistive::{Ending, Impact, Recorder, ResistanceLaw, Surroundings};
@@ -31,7 +31,7 @@ pub(crate) fn law_of_depth(
     let entry = find_resistance(name).expect("the law is registered");
     let mut table = ParamTable::new();
     for spec in entry.params {
-        if let Default::Value(value) = spec.default {
+        if let ParamDefault::Value(value) = spec.default {
             table.set(spec.key, value);
         }
     }

@@ -186,7 +186,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         number: 16,
         what: "rest begins at 6 % of the speed",
         file: "engine/src/stopping.rs",
-        edits: &[("const REST_SPEED: f64 = 0.05;", "const REST_SPEED: f64 = 0.06;")],
+        edits: &[("pub const REST_SPEED: f64 = 0.05;", "pub const REST_SPEED: f64 = 0.06;")],
         suites: &[lib("engine", "stopping")],
     },
     Mutant {

@@ -1,6 +1,6 @@
 //! `[fit]`: which numbers of a force law a fit may change.
 
-use engine::params::Default as ParamDefault;
+use engine::params::ParamDefault;
 
 use crate::diagnostics::{Diagnostic, nearest, shorten};
 use crate::model::{Coefficient, EffectChoice, ResistanceChoice};

@@ -2,7 +2,7 @@
 
 use contact_laws::{ActsOn, GRAIN_FORCES, LawEntry, find_grain_force};
 use engine::grains::Space;
-use engine::params::{Default as ParamDefault, ParamTable};
+use engine::params::{ParamDefault, ParamTable};
 
 use super::Places;
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};

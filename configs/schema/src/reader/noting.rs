@@ -1,6 +1,6 @@
 //! How a reader notes what it asks.
 
-use engine::params::{Default as ParamDefault, ParamSpec};
+use engine::params::{ParamDefault, ParamSpec};
 use engine::units::Dimension;
 
 use super::{Answer, FileKind, Question, TableReader};

@@ -1,6 +1,6 @@
 //! Numbers, quantities and lists of them.
 
-use engine::params::{Default as ParamDefault, ParamSpec, ParamTable, Range};
+use engine::params::{ParamDefault, ParamSpec, ParamTable, Range};
 use engine::units::{self, Dimension};
 
 use super::{Answer, FileKind, Found, TableReader};

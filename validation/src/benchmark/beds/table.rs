@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use measurements::median;
+
 use super::case::Outcome;
 use super::hidden::UNLISTED;
 
@@ -66,8 +68,8 @@ fn rates(outcomes: &[Outcome]) -> String {
         ),
         format!(
             "impacts, median: {:.0} where nothing is hidden, {:.0} where a listed effect is",
-            median(&of(&nothing)),
-            median(&listed)
+            median_of_impacts(&of(&nothing)),
+            median_of_impacts(&listed)
         ),
         format!(
             "nothing named where what is hidden is not listed: {}",
@@ -81,13 +83,8 @@ fn rates(outcomes: &[Outcome]) -> String {
     lines.map(|line| format!("- {line}")).join("\n")
 }
 
-fn median(outcomes: &[&Outcome]) -> f64 {
-    let mut all: Vec<usize> = outcomes.iter().map(|one| one.impacts).collect();
-    all.sort_unstable();
-    match all.len() {
-        0 => f64::NAN,
-        n => 0.5 * (all[(n - 1) / 2] + all[n / 2]) as f64,
-    }
+fn median_of_impacts(outcomes: &[&Outcome]) -> f64 {
+    median(outcomes.iter().map(|one| one.impacts as f64)).unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

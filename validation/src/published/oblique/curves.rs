@@ -5,7 +5,7 @@ use runner::beds::Record;
 
 use super::matrix::{self, Cell, READINGS, Reading};
 use super::tables::Published;
-use crate::published::check::{Band, Check, Estimate, Known, Verdict};
+use crate::published::check::{Band, Check, Estimate, Known, SIGMAS, Verdict};
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression::{self, Fitted};
 use crate::published::row::{Findings, PublishedError, Table};
@@ -14,9 +14,6 @@ use crate::published::row::{Findings, PublishedError, Table};
 /// their points is the mean of.
 const SPEEDS: [f64; 8] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0];
 const POSITIONS: f64 = 6.0;
-
-/// Standard errors of the difference that a coefficient may be off by.
-const SIGMAS: f64 = 2.0;
 
 /// Slowest impacts (m/s) that count in the mean deviation: below, the law of the article and its impacts differ
 /// most, and a fluctuation decides when a slow disc stops.

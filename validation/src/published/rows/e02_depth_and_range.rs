@@ -1,6 +1,6 @@
 //! E2: depth and range over the impact speed.
 
-use crate::published::check::{Band, Check, Estimate, Known};
+use crate::published::check::{Band, Check, Estimate, Known, SIGMAS};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::curves::{Curve, Form, Quantity, Series, series};
 use crate::published::oblique::matrix::{self, Cell, READINGS};
@@ -28,9 +28,6 @@ const GOAL: Band = Band { half: 6.0, reason: "the article's scatter between posi
 
 /// Standard errors of a curvature that no line has.
 const CURVATURE: f64 = 3.0;
-
-/// Standard errors of the scatter that explain a departure from a line.
-const SIGMAS: f64 = 2.0;
 
 /// Depths over the published ones that independent codes had at [`DEPTHS_AT`], from 1 to 4 m/s, by reading. The runs of
 /// these codes are not in this repository.

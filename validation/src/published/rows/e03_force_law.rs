@@ -1,6 +1,6 @@
 //! E3: the force on the intruder at nine depths, separated into α v² + f y.
 
-use crate::published::check::{Band, Check, Estimate, Known, or_endless};
+use crate::published::check::{Band, Check, Estimate, Known, SIGMAS, or_endless};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::force::{Component, Separated, mean_readings, separate};
 use crate::published::oblique::matrix::{self, Cell, READINGS};
@@ -20,9 +20,6 @@ pub(super) static ROW: Row = Row {
 
 /// Share of the variance of the forces that a law has to explain to be one: more than half.
 const EXPLAINED: f64 = 0.5;
-
-/// Standard errors by which both coefficients have to be positive.
-const SIGMAS: f64 = 2.0;
 
 /// Angle (deg) from which on the article claims a vertical law.
 const FROM: f64 = 30.0;

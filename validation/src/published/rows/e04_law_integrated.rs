@@ -4,7 +4,7 @@ use configs::{LoadOptions, Medium, Model, ModelSource};
 use resistive::Trajectory;
 use runner::beds::Record;
 
-use crate::published::check::{Band, Check, Estimate, or_endless};
+use crate::published::check::{Band, Check, Estimate, SIGMAS, or_endless};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::force::{Component, Separated, separate};
 use crate::published::oblique::matrix::{self, Cell, DIAMETER, GRAVITY, MASS, READINGS};
@@ -23,9 +23,6 @@ pub(super) static ROW: Row = Row {
 
 /// Angle (deg) from which on the article claims the law.
 const FROM: f64 = 30.0;
-
-/// Standard errors of the law that a deviation may be explained by.
-const SIGMAS: f64 = 2.0;
 
 /// Speeds (m/s) whose paths are drawn.
 const DRAWN: [f64; 2] = [1.0, 4.0];

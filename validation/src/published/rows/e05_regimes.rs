@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::published::check::{Band, Check, Estimate, Known};
+use crate::published::check::{Band, Check, Estimate, Known, SIGMAS};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::curves::{Form, series};
 use crate::published::oblique::matrix::{self, Cell, READINGS, Reading};
@@ -25,8 +25,6 @@ const BETWEEN: Band = Band {
     reason: "the article has no angle between 15° and 45° but 30° itself, and no fit there",
 };
 
-/// Standard errors by which a sign or a difference counts.
-const SIGMAS: f64 = 2.0;
 const REASON: &str = "two standard errors (Student's t)";
 
 /// Published approximately: speed (m/s) and time (s) from which the stopping time is its plateau.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::published::check::{Band, Check, Estimate};
+use crate::published::check::{Band, Check, Estimate, SIGMAS};
 use crate::published::laboratory::Laboratory;
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression::{self, Fitted};
@@ -25,9 +25,6 @@ pub(super) static ROW: Row = Row {
 /// eight speeds on three beds each, by the full run of this row (`validation/results/published.csv`). For impacts on one bed, which do
 /// not tell.
 const SCATTER: [f64; 3] = [0.100, 0.070, 0.059];
-
-/// Standard errors by which a slope is positive, and which a residual may be above the scatter of beds.
-const SIGMAS: f64 = 2.0;
 
 /// Mass of every shape (kg) and strength of gravity (m/s²).
 const MASS: f64 = 0.015;

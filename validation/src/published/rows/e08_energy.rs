@@ -1,6 +1,6 @@
 //! E8: the energy of an impact in three parts, and how long and how widely a bed dissipates it.
 
-use crate::published::check::{Band, Check, Estimate};
+use crate::published::check::{Band, Check, Estimate, SIGMAS};
 use crate::published::laboratory::Laboratory;
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression;
@@ -28,9 +28,6 @@ const AT_REST: Band = Band {
 
 /// Kinetic energy at which a bed is calm, over the greatest of all impacts.
 const CALM_SHARE: f64 = 0.01;
-
-/// Standard errors by which a slope or a curvature counts.
-const SIGMAS: f64 = 2.0;
 
 const HEMISPHERE: &str = "hemisphere-3d";
 

@@ -3,7 +3,7 @@
 
 use runner::beds::Record;
 
-use crate::published::check::{Band, Check, Estimate, Verdict};
+use crate::published::check::{Band, Check, Estimate, SIGMAS, Verdict};
 use crate::published::laboratory::Laboratory;
 use crate::published::planar::{self, Bed, DIAMETER, Fall};
 use crate::published::regression;
@@ -18,9 +18,6 @@ const GAP: f64 = 0.25 * DIAMETER;
 
 /// Speed (m/s) over the floor: on a deep bed the disc stops half a diameter above that floor.
 const OVER_FLOOR: f64 = 1.0;
-
-/// Standard errors by which a difference counts.
-const SIGMAS: f64 = 2.0;
 
 const REASON: &str = "two standard errors (Student's t) of the scatter of impacts";
 

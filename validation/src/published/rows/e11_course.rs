@@ -2,7 +2,7 @@
 
 use runner::beds::Record;
 
-use crate::published::check::{Band, Check, Estimate, Verdict};
+use crate::published::check::{Band, Check, Estimate, SIGMAS, Verdict};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::matrix::{self, Cell, READINGS, Reading};
 use crate::published::plot::{Panel, Plot};
@@ -31,8 +31,6 @@ const FAST: f64 = 2.0;
 /// The article's scatter of depths and ranges between positions, as a share.
 const SCATTER: f64 = 0.06;
 
-/// Standard errors by which a number is positive, or a step of Table 1 more than scatter.
-const SIGMAS: f64 = 2.0;
 const REASON: &str = "two standard errors (Student's t), by leaving out speeds and angles";
 
 /// Why nothing is said of impacts that are not there.

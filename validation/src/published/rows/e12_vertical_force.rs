@@ -2,7 +2,7 @@
 
 use runner::beds::Record;
 
-use crate::published::check::{Band, Check, Estimate, Known};
+use crate::published::check::{Band, Check, Estimate, Known, SIGMAS};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::curves::{Form, series};
 use crate::published::oblique::force::{Component, Reading, mean_readings, readings, separate};
@@ -30,9 +30,6 @@ const OTHERS: [f64; 2] = [1.0 / 0.087, 1040.0];
 
 /// The published plateau (s).
 const PLATEAU: f64 = 0.16;
-
-/// Standard errors by which a number is positive.
-const SIGMAS: f64 = 2.0;
 
 /// How long after contact a force is early (s): about what the disc takes for its own diameter.
 const EARLY: f64 = 0.01;

@@ -1,6 +1,6 @@
 //! E13: the course of the hemisphere's impact.
 
-use crate::published::check::{Band, Check, Estimate};
+use crate::published::check::{Band, Check, Estimate, SIGMAS};
 use crate::published::laboratory::Laboratory;
 use crate::published::regression;
 use crate::published::row::{Findings, PublishedError, Row, Table};
@@ -22,9 +22,6 @@ const SMOOTH: usize = 10;
 
 /// A peak stands out from the valley before it by this share of itself.
 const STANDS_OUT: f64 = 0.1;
-
-/// Standard errors by which a difference or a slope is positive.
-const SIGMAS: f64 = 2.0;
 
 fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     let impacts = shapes::over_speed(laboratory, &[HEMISPHERE])?;

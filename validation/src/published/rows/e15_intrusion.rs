@@ -8,7 +8,7 @@ use std::sync::Arc;
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use runner::beds::{Job, Record};
 
-use crate::published::check::{Band, Check, Estimate};
+use crate::published::check::{Band, Check, Estimate, SIGMAS};
 use crate::published::laboratory::Laboratory;
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression;
@@ -29,9 +29,6 @@ pub(super) static ROW: Row = Row {
 
 /// Beds, quick and in full.
 const BEDS: [u64; 2] = [4, 8];
-
-/// Standard errors that a mean over beds is known to.
-const SIGMAS: f64 = 2.0;
 
 /// Terms of α_z(β, γ) = A₀₀ + A₁₀ cos 2β + B₁₁ sin(2β + γ) + B₀₁ sin γ + B₋₁₁ sin(−2β + γ) (N/cm³) of Table S2, the
 /// generic ones, by name.
