@@ -46,10 +46,16 @@ pub(crate) fn as_text(
     }
     text.push('\n');
     if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
-        let explained = diagnosis.verdict.is_explained();
+        let answer = match diagnosis.verdict.is_explained() {
+            true if reports::explains_if_conditions_differ(object) => {
+                "YES, IF CONDITIONS DIFFER AS POURINGS DO"
+            }
+            true => "YES",
+            false => "NO",
+        };
         text.push_str(&format!(
             "Does the model explain the data?  {}   p1 {}   lack of fit p {}\n",
-            if explained { "YES" } else { "NO" },
+            answer,
             probability(p1),
             probability(p_lof)
         ));

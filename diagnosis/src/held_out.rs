@@ -46,10 +46,27 @@ pub struct HeldOut {
     /// left out one at a time. `None` for fewer than three conditions, and where no effect is proposed.
     #[serde(serialize_with = "six_digits_or_null")]
     pub ratio_at_most: Option<f64>,
+    /// The errors in units of what is expected; `None` for beds of grains and where no condition is judged.
+    pub weighed: Option<Weighed>,
     /// How much the logarithm of the predictive density rises by what is proposed, over the
     /// conditions that can be predicted both with and without it.
     #[serde(serialize_with = "six_digits")]
     pub log_density_gain: f64,
+}
+
+/// Root mean squares of errors, each in units of what is expected: the noise and the uncertainty of the prediction. Where
+/// readings hang together or differ in their noise, these errors show an effect that errors in metres do not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Weighed {
+    /// Of the model as it is.
+    #[serde(serialize_with = "six_digits")]
+    pub before: f64,
+    /// With what is proposed.
+    #[serde(serialize_with = "six_digits")]
+    pub after: f64,
+    /// One-sided 90 % bound of `after` over `before`, as that of the errors.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub ratio_at_most: Option<f64>,
 }
 
 /// Which conditions were left out of a fit.
@@ -125,6 +142,7 @@ impl HeldOut {
             conditions_judged: 2,
             not_predicted: Vec::new(),
             ratio_at_most: None,
+            weighed: None,
             log_density_gain: 0.0,
         }
     }
@@ -155,7 +173,7 @@ impl HeldOut {
     ) -> Result<Self, FitError> {
         let stated = Self::of(problem, before, after)?;
         let shows_nothing = stated.conditions == LeftOut::Holdout
-            && stated.is_above_noise() == Some(false)
+            && stated.in_noise(stated.before).is_some_and(|before| before < CLEAR)
             && problem.forward.is_judged_by_held_out();
         match shows_nothing {
             true => Self::over(problem, LeftOut::HoldoutAndOneAtATime, (before, after)),
@@ -230,8 +248,10 @@ impl HeldOut {
             conditions_judged: compared.len(),
             not_predicted,
             ratio_at_most: is_proposed
-                .then(|| ratio_at_most(problem.observed, &all, unit))
+                .then(|| ratio_at_most(&squares(problem.observed, &all, unit)))
                 .flatten(),
+            weighed: (problem.forward.is_judged_by_held_out() && !both.is_empty())
+                .then(|| Weighed::of(&both, &all)),
             log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
         })
     }
@@ -267,20 +287,27 @@ impl HeldOut {
     /// Whether the model without it misses by more than [`CLEAR`] times the noise; `None` where that is not known.
     #[must_use]
     pub(crate) fn is_above_noise(&self) -> Option<bool> {
-        Some(self.before? >= CLEAR * self.noise_floor?)
+        let is_weighed = self.weighed.is_some_and(|weighed| weighed.before >= CLEAR);
+        Some(is_weighed || self.before? >= CLEAR * self.noise_floor?)
     }
 
     /// Whether the model without it misses by more than [`CLEAR`] times what the right one would; `None` where that is not
     /// known.
     #[must_use]
     pub(crate) fn is_above_expected(&self) -> Option<bool> {
-        Some(self.before? >= CLEAR * self.expected?)
+        Some(!self.leaves_what_is_expected() && self.before? >= CLEAR * self.expected?)
     }
 
     /// Whether it is missed by that much with what is proposed, too; `None` where that is not known.
     #[must_use]
     pub(crate) fn leaves_more_than_noise(&self) -> Option<bool> {
         Some(self.after? >= CLEAR * self.noise_floor?)
+    }
+
+    /// Whether what is proposed leaves no more than the noise and the uncertainty of its predictions.
+    #[must_use]
+    pub(crate) fn leaves_what_is_expected(&self) -> bool {
+        self.weighed.is_some_and(|weighed| weighed.after <= WITHIN)
     }
 
     /// Whether what is proposed leaves so much of what exceeds the noise that its form is in doubt.
@@ -302,7 +329,8 @@ impl HeldOut {
     pub(crate) fn is_nearer(&self) -> Option<bool> {
         let ratio = self.after? / self.before?;
         let in_most = self.ratio_at_most.is_none_or(|most| most <= NEARER);
-        Some(ratio <= NEARER && (in_most || self.leaves_only_noise()))
+        let is_weighed = self.weighed.is_some_and(|weighed| weighed.is_nearer());
+        Some(is_weighed || ratio <= NEARER && (in_most || self.leaves_only_noise()))
     }
 
     /// Whether what is proposed reduces an error far above the noise to the noise. If one of a few conditions shows most of an
@@ -407,25 +435,49 @@ impl HeldOut {
     }
 }
 
-/// One-sided 90 % bound of the error with the effect over the error without it, by resampling conditions.
-fn ratio_at_most(observed: &Observed, all: &[&Pair], unit: Unit) -> Option<f64> {
+impl Weighed {
+    /// Of the conditions `both`; its bound is over `all`.
+    fn of(both: &[Pair], all: &[&Pair]) -> Self {
+        let readings: usize = both.iter().map(|(_, before, _)| before.error.len()).sum();
+        let mean = |of: fn(&Pair) -> f64| {
+            (both.iter().map(of).sum::<f64>() / readings.max(1) as f64).sqrt()
+        };
+        let squares = |(_, before, after): &&Pair| [before.weighed_square, after.weighed_square];
+        Self {
+            before: mean(|(_, before, _)| before.weighed_square),
+            after: mean(|(_, _, after)| after.weighed_square),
+            ratio_at_most: ratio_at_most(&all.iter().map(squares).collect::<Vec<_>>()),
+        }
+    }
+
+    /// Whether what is proposed reduces a clear error to what is expected, in most choices of the conditions too.
+    fn is_nearer(&self) -> bool {
+        let falls = self.after <= NEARER * self.before;
+        falls && self.after <= WITHIN && self.ratio_at_most.is_some_and(|most| most <= NEARER)
+    }
+}
+
+/// Squares of the errors without and with the effect of the pairs that have an error in `unit`.
+fn squares(observed: &Observed, all: &[&Pair], unit: Unit) -> Vec<[f64; 2]> {
     let error = |condition: usize, one: &Predicted| {
         let mut sums = Sums::default();
         sums.add(&observed.conditions[condition], &one.error);
         Some(unit.pick(&sums.errors())?.powi(2))
     };
-    let pairs: Vec<[f64; 2]> = all
-        .iter()
-        .filter_map(|(c, before, after)| Some([error(*c, before)?, error(*c, after)?]))
-        .collect();
-    if pairs.len() < FEWEST {
+    let both = |(c, before, after): &&Pair| Some([error(*c, before)?, error(*c, after)?]);
+    all.iter().filter_map(both).collect()
+}
+
+/// One-sided 90 % bound of the error with the effect over the error without it, by resampling conditions with these `squares`.
+fn ratio_at_most(squares: &[[f64; 2]]) -> Option<f64> {
+    if squares.len() < FEWEST {
         return None;
     }
     let mut random = stream(DEFAULT_SEED, Purpose::HeldOut, 0);
     let mut ratios: Vec<f64> = (0..CHOICES)
         .map(|_| {
-            let sum = (0..pairs.len()).fold([0.0; 2], |sum, _| {
-                let pair = pairs[random.random_range(0..pairs.len())];
+            let sum = (0..squares.len()).fold([0.0; 2], |sum, _| {
+                let pair = squares[random.random_range(0..squares.len())];
                 [sum[0] + pair[0], sum[1] + pair[1]]
             });
             (sum[1] / sum[0]).sqrt()
@@ -456,8 +508,25 @@ mod tests {
             conditions_judged: judged,
             not_predicted: by.map(one).into_iter().collect(),
             ratio_at_most: None,
+            weighed: None,
             log_density_gain: gain,
         }
+    }
+
+    #[test]
+    fn an_error_that_readings_in_metres_hide_counts_where_weighed_errors_fall_to_what_is_expected()
+    {
+        let of = |after: f64, ratio_at_most: Option<f64>| {
+            let weighed = Some(Weighed { before: 1.6, after, ratio_at_most });
+            HeldOut { weighed, ..HeldOut::of_errors(1.2, 1.4, 1.0) }
+        };
+        let found = of(0.9, Some(0.6));
+        assert_eq!((found.is_above_noise(), found.is_nearer()), (Some(true), Some(true)));
+        // It falls too little, leaves more than is expected, or falls in too few choices of the conditions.
+        let others = [of(1.25, Some(0.6)), of(1.31, Some(0.6)), of(0.9, Some(0.8)), of(0.9, None)];
+        assert!(others.iter().all(|one| one.is_nearer() == Some(false)));
+        let in_metres = HeldOut::of_errors(1.2, 1.4, 1.0);
+        assert_eq!(in_metres.is_above_noise(), Some(false));
     }
 
     #[test]

@@ -34,9 +34,13 @@ const SEEN: f64 = 4.0;
 /// of effects to choose from. Log odds by which effects that leave a part have to exceed a force of any form.
 const LIKELIER: f64 = 15.0;
 
-/// Log odds by which any one or two effects have to exceed a force of any form. In simulated sets, effects that are there do
-/// by 12 at least, and most effects that only resemble the force that is there by less.
+/// Log odds by which two effects, or one that hardly explains the data, have to exceed a force of any form.
 const NOT_ANY: f64 = 10.0;
+
+/// The same of one effect that explains the data: of some twenty effects, each fitted, the best exceeds by 5 or so by chance.
+/// In simulated sets, effects that are there do by 6 at least, and effects that only resemble the force that is there by 5 at
+/// most.
+const NEAREST: f64 = 6.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.
 const MORE_THAN_SESSIONS: f64 = 7.0;
@@ -119,11 +123,11 @@ impl Judge<'_> {
             let hint = "conditions differ by more than their repeats show, as beds do that are poured anew; if they \
                         were, say which runs are of one pouring in a column `session` of the runs";
             let hint = hint.to_owned();
-            return self.diagnosis(
-                nothing(self.problem, &wide),
-                &wide,
-                Grounds { hint, ..grounds },
-            );
+            let verdict = nothing(self.problem, &wide);
+            let mut found = self.diagnosis(verdict, &wide, Grounds { hint, ..grounds })?;
+            found.strength_reasons.push(StrengthReason::ConditionsDiffer);
+            found.strength = Strength::of(&found.strength_reasons);
+            return Ok(found);
         }
         let hint = "the model is rejected, and no listed effect helps".to_owned();
         self.refuse(Grounds { hint, ..grounds })
@@ -226,14 +230,21 @@ impl Judge<'_> {
     /// to be larger if the effect leaves a part of the error, or if few conditions show it. Otherwise, effects that are not
     /// told apart need no odds, since they are several forms themselves, nor does an effect that takes most of a clear error.
     fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, FitError> {
-        let is_doubtful =
-            p.is_some_and(|p| p <= DOUBTFUL) || held_out.leaves_more_than_noise() == Some(true);
-        let leaves = held_out.leaves_a_part() && is_doubtful;
-        match leaves || held_out.is_shown_by_few() {
-            true => self.is_no_likelier(&self.leader, LIKELIER),
-            false if self.alike.len() > 1 || held_out.takes_most() => Ok(false),
-            false => self.is_no_likelier(&self.leader, NOT_ANY),
+        let is_misfit = p.is_some_and(|p| p <= DOUBTFUL);
+        let leaves_more = held_out.leaves_more_than_noise() == Some(true);
+        let leaves = held_out.leaves_a_part() && (is_misfit || leaves_more);
+        let explains = !is_misfit && (!leaves || held_out.leaves_what_is_expected());
+        if !leaves && (self.alike.len() > 1 || held_out.takes_most()) && !held_out.is_shown_by_few()
+        {
+            return Ok(false);
         }
+        let least = match explains {
+            _ if held_out.is_shown_by_few() => LIKELIER,
+            true => NEAREST,
+            false if leaves => LIKELIER,
+            false => NOT_ANY,
+        };
+        self.is_no_likelier(&self.leader, least)
     }
 
     /// Whether the effects of `fitted` exceed a force of any form by less than `least` in log odds.

@@ -28,6 +28,8 @@ pub enum StrengthReason {
     /// Held-out conditions are missed by more than the scatter of their repeats, though nothing is found: conditions
     /// differ by more than their runs do.
     HeldOutAboveNoise,
+    /// The model is rejected unless conditions differ by more than their repeats show, as beds that are poured anew.
+    ConditionsDiffer,
     /// Nothing that was held out could be predicted both without and with what is named.
     HeldOutNotJudged,
     /// What is named cannot predict a condition that the model without it predicts.

@@ -44,6 +44,9 @@ pub fn sentence(diagnosis: &Value) -> String {
                 None => format!("The model lacks something that {}", explained_by_none(diagnosis)),
             }
         }
+        Verdict::NothingDetected if explains_if_conditions_differ(diagnosis) => {
+            "Nothing is missing that these data could show, if conditions differ as beds do that are poured anew".to_owned()
+        }
         Verdict::NothingDetected => "Nothing is missing that these data could show".to_owned(),
         Verdict::ExplainedByApparatus => {
             "Errors of the apparatus explain what the model misses; no effect is needed".to_owned()
@@ -137,6 +140,13 @@ fn explained(diagnosis: &Value, effects: &[String]) -> Vec<String> {
 /// Whether held-out conditions are missed by more than noise though no effect is named.
 pub(crate) fn misses(diagnosis: &Value) -> bool {
     texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise")
+}
+
+/// Whether the model of a `diagnosis` that names nothing explains the data only if conditions differ by more than their repeats
+/// do, as beds that are poured anew.
+#[must_use]
+pub fn explains_if_conditions_differ(diagnosis: &Value) -> bool {
+    texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "conditions-differ")
 }
 
 /// Standard errors from which an amplitude is one.

@@ -28,7 +28,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use claim::{probability as probability_in_words, sentence as claim_in_words};
+pub use claim::{
+    explains_if_conditions_differ, probability as probability_in_words, sentence as claim_in_words,
+};
 use exchange::read::ReadError;
 use exchange::run_files::{RunFiles, is_log};
 use plots::PictureError;

@@ -186,6 +186,9 @@ fn reason_in_words(reason: &str) -> &str {
             "conditions that were held out are missed by more than their repeats scatter, as where days, pourings or \
              levels differ (a column `session` in the table of runs says which runs share one)"
         }
+        "conditions-differ" => {
+            "the model is rejected unless conditions differ as beds do that are poured anew"
+        }
         "held-out-not-judged" => {
             "nothing that was held out could be predicted both without and with it"
         }

@@ -96,6 +96,7 @@ impl Confirmation {
         let [.., explained] = HeldOut::share(before, after, noise_floor);
         let held_out = HeldOut {
             ratio_at_most: None,
+            weighed: None,
             explained,
             before,
             after,

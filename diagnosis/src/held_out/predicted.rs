@@ -101,11 +101,25 @@ pub(super) struct Predicted {
     pub(super) error: DVector<f64>,
     /// Logarithm of the predictive density, up to a constant of the measurements.
     pub(super) log_density: f64,
+    /// Square of the error in units of what is expected: the noise and the uncertainty of the prediction.
+    pub(super) weighed_square: f64,
     /// Mean variance of the prediction due to the uncertainty of the parameters, in units of the variance of the noise.
     pub(super) open: f64,
 }
 
 impl Predicted {
+    /// With an `error`, the whitened `residual` of it, and a prediction that has the covariance `predicted` beside the noise.
+    fn new(error: DVector<f64>, residual: &DVector<f64>, predicted: &DMatrix<f64>) -> Self {
+        let expected = DMatrix::identity(residual.len(), residual.len()) + predicted;
+        // One plus a square is always positive definite; if not finite, nothing is known.
+        let (weighed_square, log_density) =
+            Cholesky::new(expected).map_or((f64::INFINITY, f64::NEG_INFINITY), |factor| {
+                let square = residual.dot(&factor.solve(residual));
+                (square, -0.5 * (square + log_determinant(&factor)))
+            });
+        Self { error, log_density, weighed_square, open: mean_variance(predicted) }
+    }
+
     /// `conditions` that were held out, by `fitted`, under the noise of `noisy`.
     pub(super) fn unseen(
         problem: &FitProblem<'_>,
@@ -122,11 +136,8 @@ impl Predicted {
             let residual = data.residual(&fitted.fit.point)?.rows(0, rows).into_owned();
             let jacobian = data.jacobian(&fitted.fit)?.rows(0, rows).into_owned();
             let covariance = &jacobian * &parameters * jacobian.transpose();
-            Ok(Self {
-                error: weights[0].colour_without_angle(&residual),
-                log_density: density(&residual, &covariance),
-                open: covariance.trace() / rows.max(1) as f64,
-            })
+            let error = weights[0].colour_without_angle(&residual);
+            Ok(Self::new(error, &residual, &covariance))
         };
         let attempt = |&condition: &usize| match one(condition) {
             Ok(predicted) => Ok(Ok(predicted)),
@@ -163,8 +174,7 @@ impl Predicted {
                 continue;
             };
             let covariance = &slope * others.solve(&slope.transpose());
-            let open = covariance.trace() / rows.max(1) as f64;
-            if open > OPEN * OPEN {
+            if mean_variance(&covariance) > OPEN * OPEN {
                 predicted.push(Err(Unpredicted::Open("the other conditions say too little of it")));
                 continue;
             }
@@ -174,11 +184,11 @@ impl Predicted {
                 true => refitted_without(problem, noisy, fitted, condition).unwrap_or(stepped),
                 false => stepped,
             };
-            predicted.push(Ok(Self {
-                error: weight.colour_without_angle(&residual),
-                log_density: density(&residual, &covariance),
-                open,
-            }));
+            predicted.push(Ok(Self::new(
+                weight.colour_without_angle(&residual),
+                &residual,
+                &covariance,
+            )));
         }
         Ok(predicted)
     }
@@ -220,14 +230,9 @@ fn told_apart(others: DMatrix<f64>, all: &DMatrix<f64>) -> Option<Cholesky<f64, 
     is_fixed.then(|| Cholesky::new(others)).flatten()
 }
 
-/// Logarithm of the normal density of a whitened `residual`, whose prediction has covariance
-/// `predicted` beside the noise, up to a constant.
-fn density(residual: &DVector<f64>, predicted: &DMatrix<f64>) -> f64 {
-    let covariance = DMatrix::identity(residual.len(), residual.len()) + predicted;
-    // One plus a square is always positive definite; if not finite, nothing is known.
-    Cholesky::new(covariance).map_or(f64::NEG_INFINITY, |factor| {
-        -0.5 * (residual.dot(&factor.solve(residual)) + log_determinant(&factor))
-    })
+/// Mean variance of a prediction with this `covariance`.
+fn mean_variance(covariance: &DMatrix<f64>) -> f64 {
+    covariance.trace() / covariance.nrows().max(1) as f64
 }
 
 #[cfg(test)]
@@ -242,8 +247,10 @@ mod tests {
         let runs = (0..3).map(|at| scalar_run(at, [Some(0.1), None, None])).collect();
         let conditions = speeds.map(|speed| condition(speed, 90.0)).into();
         let observed = Observed::of(&set(Kind::Scalar, conditions, runs));
-        let predicted =
-            |log_density| Ok(Predicted { error: DVector::zeros(1), log_density, open: 0.0 });
+        let predicted = |log_density| {
+            let error = DVector::zeros(1);
+            Ok(Predicted { error, log_density, weighed_square: 0.0, open: 0.0 })
+        };
         let fails = || Err(Unpredicted::Fails("it never stops".to_owned()));
         let before = vec![predicted(-1.0), predicted(-20.0), fails()];
         let after = vec![predicted(-2.0), fails(), fails()];

@@ -10,6 +10,8 @@ use super::found::{Found, MOMENTS};
 use crate::fit::Fit;
 use crate::fit_problem::{FitProblem, Fitted};
 use crate::forward::{Moment, NORMAL_95, Passages, PredictError, Request, Scatter, sense};
+use crate::observable::Observable;
+use crate::observed::ObservedCondition;
 
 /// Share of a velocity along the surface from which on a force normal to the motion is given: none acts on a vertical fall.
 const OBLIQUE: f64 = 0.1;
@@ -115,7 +117,9 @@ pub(super) fn readings(
         let body = &problem.set.conditions[condition];
         let [angle, diameter] = [body.angle_deg.to_radians(), body.diameter];
         let moments = by.passage(condition, &at(&fit.point.parameters, &with), &others, MOMENTS)?;
-        for one in moments {
+        // A model that lacks much may go far deeper than any body did.
+        let deepest = deepest(&problem.observed.conditions[condition]);
+        for one in moments.into_iter().filter(|one| one.depth <= deepest) {
             let state = [one.depth, one.speed, angle, diameter];
             let of_normal = grid.sideways_shares_at(state).collect();
             let shares = [grid.shares_at(state).to_vec(), of_normal];
@@ -141,6 +145,15 @@ pub(super) fn readings(
         }
     }
     Ok(readings)
+}
+
+/// The greatest depth that was measured (m); infinite where no depth was.
+fn deepest(observed: &ObservedCondition) -> f64 {
+    let is_depth = |kind: &Observable| matches!(kind, Observable::Depth | Observable::FinalDepth);
+    let kinds = observed.layout.kinds();
+    let depths = kinds.iter().zip(observed.mean.iter()).filter(|(kind, _)| is_depth(kind));
+    let deepest = depths.map(|(_, depth)| *depth).fold(f64::NEG_INFINITY, f64::max);
+    if deepest > 0.0 { deepest } else { f64::INFINITY }
 }
 
 /// The posterior distribution of the missing force.

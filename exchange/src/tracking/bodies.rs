@@ -205,9 +205,7 @@ impl Bodies {
         labels: &[(String, String)],
         settings: &Settings<'_>,
     ) -> Result<Body, Fault> {
-        let label = |key: &str| {
-            labels.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
-        };
+        let label = |key: &str| labelled(labels, key);
         let name = LABELS.iter().find_map(|key| label(key));
         if let Some(name) = name.filter(|_| !self.0.is_empty())
             && !self.0.iter().any(|(other, _)| is_called(other, name))
@@ -292,6 +290,36 @@ impl Bodies {
         }
         Ok(body)
     }
+}
+
+/// What a label called `key`, or as a column of bodies of that kind may be called, says. Single letters say too little.
+fn labelled<'a>(labels: &'a [(String, String)], key: &str) -> Option<&'a str> {
+    let others = COLUMNS.iter().find(|(own, _)| *own == key).map_or(&[][..], |(_, names)| names);
+    let is_called = |name: &str| name == key || name.len() > 2 && others.contains(&name);
+    labels.iter().find(|(name, _)| is_called(name)).map(|(_, value)| value.as_str())
+}
+
+/// A warning if an option says of the body of `run` what one of its columns says otherwise.
+pub(super) fn set_aside(
+    run: &str,
+    labels: &[(String, String)],
+    settings: &Settings<'_>,
+) -> Option<String> {
+    let sizes = [("diameter", Dimension::LENGTH), ("mass", Dimension::MASS)];
+    sizes.into_iter().find_map(|(key, dimension)| {
+        let column = labelled(labels, key)?;
+        let stated = settings.quantity(key, dimension, labels).ok()??;
+        // Trackers call a brightness mass, too: it has no unit.
+        let value = parse(column, dimension).ok().filter(|_| column.contains(char::is_alphabetic))?;
+        ((value / stated - 1.0).abs() > 1e-3).then(|| {
+            format!(
+                "Warning: {} {} is taken for all runs, though a column has {column} for {run}: leave {} out if the column is right.",
+                flag(key),
+                settings.text(key).unwrap_or_default(),
+                flag(key)
+            )
+        })
+    })
 }
 
 /// Whether two names of bodies are one, but for capitals.

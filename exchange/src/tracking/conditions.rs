@@ -202,6 +202,24 @@ fn by_speed(members: &[&Member<'_>]) -> Vec<String> {
     (0..members.len()).map(|at| names[of(at)].clone()).collect()
 }
 
+/// A warning if by their names no two runs are repeats, though some of one body are as fast.
+pub(super) fn of_no_repeats(members: &[Member<'_>], grouping: &Grouping) -> Option<String> {
+    /// Fewest runs that are a series.
+    const SERIES: usize = 4;
+    let is_alone = called::groups(&grouping.ids).len() == members.len();
+    let mut alike = by_speed(&members.iter().collect::<Vec<_>>());
+    alike.sort();
+    alike.dedup();
+    (members.len() >= SERIES && is_alone && alike.len() < members.len()).then(|| {
+        format!(
+            "Warning: by their names the {} runs have a condition each, and by their speeds {} conditions: if some are repeats, say \
+             where the number of the repeat stands, as in --condition \"{{condition}}_v{{repeat}}\".",
+            members.len(),
+            alike.len()
+        )
+    })
+}
+
 /// A warning if runs that are grouped by speed alone end at depths that are far apart.
 pub(super) fn of_other_depths(runs: &[Run], grouping: &Grouping) -> Option<String> {
     /// Relative standard deviation of the final depths, which repeats rarely exceed.

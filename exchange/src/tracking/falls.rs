@@ -7,8 +7,13 @@ use super::motion::Path;
 use super::run::Run;
 use super::settings::Settings;
 
-/// Smallest difference from gravity that brings a warning: relative, and in standard errors.
-const CLEAR: (f64, f64) = (0.04, 4.0);
+/// Smallest relative difference from gravity that brings a warning, and in standard errors: of all runs together, and of one.
+const CLEAR: f64 = 0.04;
+const OF_ALL: f64 = 3.0;
+const OF_ONE: f64 = 4.0;
+
+/// Accelerations beyond this many times gravity come from frames, not from a scale.
+const READABLE: f64 = 3.0;
 
 /// Largest number of runs that a warning names.
 const LISTED: usize = 4;
@@ -34,7 +39,7 @@ pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<St
     let question = "are the scale, the unit and the frame rate right? A guide or air brakes too; speeds and depths are as the \
                     table has them.";
     let gravity = settings.gravity;
-    if is_off(all, gravity) {
+    if is_off(all, gravity, OF_ALL) {
         let Reading { value, se } = all;
         return Some(format!(
             "Warning: before contact the bodies fall at {value:.2} \u{b1} {se:.2} m/s^2, not at {gravity}: {question}"
@@ -43,7 +48,9 @@ pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<St
     let usual = median(falls.iter().map(|(_, fall)| fall.value))?;
     let scatter = deviation_of(falls.iter().map(|(_, fall)| (fall.value - usual).abs() / fall.se));
     let own = |fall: &Reading| Reading { se: fall.se * scatter.max(1.0), ..*fall };
-    let off = falls.iter().filter(|(_, fall)| is_off(own(fall), gravity));
+    let off = falls.iter().filter(|(_, fall)| {
+        fall.value.abs() < READABLE * gravity && is_off(own(fall), gravity, OF_ONE)
+    });
     let off: Vec<String> = off.map(|(name, fall)| format!("{name} ({:.2})", fall.value)).collect();
     (!off.is_empty()).then(|| {
         let named = listed(&off);
@@ -129,6 +136,6 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-fn is_off(fall: Reading, gravity: f64) -> bool {
-    (fall.value - gravity).abs() > (CLEAR.0 * gravity).max(CLEAR.1 * fall.se)
+fn is_off(fall: Reading, gravity: f64, errors: f64) -> bool {
+    (fall.value - gravity).abs() > (CLEAR * gravity).max(errors * fall.se)
 }

@@ -324,8 +324,11 @@ impl<'a> Grid<'a> {
         let label = |at: usize| {
             let value = rows.first()?.cell(at);
             let is_one = rows.iter().all(|row| row.cell(at) == value);
+            let is_number = matches!(self.sheet.number(value), Number::Value(_));
             let value = match &self.headings[at].unit {
                 Unit::Unstated => value.to_owned(),
+                // Quantities have a decimal point.
+                unit if is_number => format!("{} {}", value.replace(',', "."), unit.word()),
                 unit => format!("{value} {}", unit.word()),
             };
             let stem = &self.headings[at].stem;

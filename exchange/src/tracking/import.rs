@@ -3,10 +3,10 @@
 use std::path::{Path as File, PathBuf};
 
 use engine::units::Dimension;
-use measurements::{Frame, Reading, Tip};
+use measurements::{Contact, Frame, Reading, Tip, median};
 
 use super::begun::{Begun, begin, tracks};
-use super::bodies::Bodies;
+use super::bodies::{Bodies, set_aside};
 use super::conditions::{self, Grouping, Member};
 use super::fault::{Fault, TrackingError};
 use super::lost::lost_from;
@@ -18,7 +18,7 @@ use super::set::{Set, Understood};
 use super::settings::{Settings, Tracked};
 use super::surface::{self, Level, Seen};
 use super::tilt::{Flight, tilt, turned_back};
-use super::track::deviation;
+use super::track::{Track, deviation};
 use super::{days, falls, import_file, inputs, written};
 
 /// Reads `paths` under `options` into the set that is to stand in the folder `out`.
@@ -39,6 +39,7 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     told.extend(falls::off_gravity(&begun, &settings));
     told.extend(falls::of_axes(&begun));
     told.extend(of_one_body(&begun));
+    told.extend(begun.iter().find_map(|one| set_aside(&one.name, &one.labels, &settings)));
     let Finished { runs, understood, level, tilt, grouping, told: seen } =
         finish(begun, &settings)?;
     told.extend(seen);
@@ -84,9 +85,14 @@ fn of_one_body(begun: &[Begun]) -> Option<String> {
         /// Fewest readings on the same lines, and largest scatter of the distance in errors of a reading.
         const LEAST: usize = 20;
         const STEADY: f64 = 1.3;
+        /// Least distance of two marks, in errors of a reading.
+        const APART: f64 = 10.0;
         let apart: Vec<f64> =
             one.track.beside(&other.track).map(|[one, other]| one - other).collect();
-        apart.len() >= LEAST && deviation(&apart) < STEADY * libm::hypot(one.noise(), other.noise())
+        let noise = libm::hypot(one.noise(), other.noise());
+        // Repeats that are let go together keep none.
+        let is_apart = median(apart.iter().map(|one| one.abs())) > Some(APART * noise);
+        apart.len() >= LEAST && is_apart && deviation(&apart) < STEADY * noise
     };
     let pairs = (0..begun.len()).flat_map(|at| begun[..at].iter().map(move |one| (one, at)));
     let mut pairs = pairs.map(|(one, at)| (one, &begun[at]));
@@ -146,6 +152,8 @@ struct Sight {
     noise: f64,
     /// A warning about a tracker that lost the body.
     lost: Option<String>,
+    /// How far it rises above the surface again (m), if it does.
+    rebound: Option<f64>,
 }
 
 /// How far the picture of a run is turned back, and around which place (way and depth in m).
@@ -195,8 +203,11 @@ fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fa
     if settings.tracked.is_none() && surface::depends_on_the_point(&seen) {
         told.push(of_the_point(point));
     }
+    let rebounds = sights.iter().zip(&begun);
+    let rebounds = rebounds.filter_map(|(sight, one)| Some((one.name.clone(), sight.rebound?)));
+    told.extend(of_rebounds(&rebounds.collect::<Vec<_>>()));
     for (begun, (sight, touch)) in begun.into_iter().zip(sights.iter().zip(touches)) {
-        let Sight { seen, scales, frames, noise, lost } = sight;
+        let Sight { seen, scales, frames, noise, lost, .. } = sight;
         told.extend(lost.clone());
         let (run, words) = Run::of(begun, (scales, frames, *noise), seen, touch);
         runs.push(run);
@@ -206,6 +217,7 @@ fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fa
     let members: Vec<Member<'_>> = runs.iter().map(member).collect();
     let grouping =
         conditions::group(&members, settings.pattern.as_ref()).map_err(|fault| vec![fault])?;
+    told.extend(conditions::of_no_repeats(&members, &grouping));
     for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(&grouping.ids) {
         words.speed = run.speed;
         words.condition.clone_from(id);
@@ -315,12 +327,38 @@ fn see(
         let right = format!("--leave-out {name} goes on without it{by_hand}");
         Fault::new(&one.path.track.file, what, right)
     })?;
+    refuse_shallow(&of_the_body, departure.contact.depth.value, one, &scales)?;
     let fall = (settings.gravity, one.body.diameter);
     motion::refuse_several(&of_the_body, (&departure.contact, noise), fall, &one.path.track)?;
     let soft = one.body.soft_entry();
     let diameter = one.body.diameter;
+    let rebound =
+        rebound(&of_the_body, &departure.contact, REBOUND.0 * diameter + REBOUND.1 * noise);
     let seen = Seen { name: one.name.clone(), departure, stated, soft, diameter, below_centre };
-    Ok(Sight { seen, scales, frames, noise, lost })
+    Ok(Sight { seen, scales, frames, noise, lost, rebound })
+}
+
+/// Diameters, and errors of a reading, from which a body that rises has left the bed.
+const REBOUND: (f64, f64) = (0.25, 10.0);
+
+/// How far the body rises above its `contact` after it (m), if by more than `least`.
+fn rebound(frames: &[Frame], contact: &Contact, least: f64) -> Option<f64> {
+    let behind = frames.iter().filter(|frame| frame.t > contact.time.value);
+    let rise = contact.depth.value - behind.map(|frame| frame.z).fold(f64::INFINITY, f64::min);
+    Some(rise).filter(|rise| *rise > least)
+}
+
+/// A warning about bodies that leave the bed again: their runs with how far (m).
+fn of_rebounds(runs: &[(String, f64)]) -> Option<String> {
+    let each: Vec<String> =
+        runs.iter().map(|(name, rise)| format!("{name} ({:.1} mm)", 1e3 * rise)).collect();
+    (!each.is_empty()).then(|| {
+        format!(
+            "Warning: after contact the body rises above the surface again in {}. No force law here throws a body out: end these \
+             clips where it leaves the bed, or leave the runs out.",
+            configs::shorten(&each.join(", "))
+        )
+    })
 }
 
 /// Refuses units in which the body moves implausibly far.
@@ -342,6 +380,36 @@ fn refuse_far(frames: &[Frame], one: &Begun, scales: &Scales) -> Result<(), Faul
     );
     let right = "is the clip played slowly? --rate 1000Hz counts frames; else --length-unit, --time-unit, --diameter";
     Err(Fault::new(&one.path.track.file, what, right))
+}
+
+/// Refuses units that the fall told and in which the body hardly goes into the bed, whose surface is at the depth `surface` (m):
+/// a clip that is played slowly falls as one of a far smaller world does.
+fn refuse_shallow(
+    frames: &[Frame],
+    surface: f64,
+    one: &Begun,
+    scales: &Scales,
+) -> Result<(), Fault> {
+    /// Least depth, in diameters.
+    const SHALLOW: f64 = 0.02;
+    let deepest = frames.iter().map(|frame| frame.z).fold(f64::NEG_INFINITY, f64::max) - surface;
+    if !scales.is_read || deepest >= SHALLOW * one.body.diameter {
+        return Ok(());
+    }
+    let Track { time, vertical, file, .. } = &one.path.track;
+    let what = format!(
+        "nothing states the units of `{}` and `{}`; in {} and {}, which the fall before contact allows, the body of {:.4} mm goes \
+         {:.2} mm into the bed",
+        time.name,
+        vertical.name,
+        scales.time.0,
+        scales.length.0,
+        1e3 * one.body.diameter,
+        1e3 * deepest
+    );
+    let right = "is the clip played slowly? --rate 1000Hz, the rate that it was taken at, counts frames; else --time-unit and \
+                 --length-unit";
+    Err(Fault::new(file, what, right))
 }
 
 /// Error of a height of release (m).

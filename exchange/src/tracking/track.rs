@@ -1,5 +1,7 @@
 //! One tracked body as its table has it.
 
+use measurements::median;
+
 use super::units::Unit;
 
 /// A column of numbers.
@@ -64,6 +66,10 @@ pub(super) fn deviation(values: &[f64]) -> f64 {
 /// Share of the way of the farthest track up to which one stands still.
 pub(super) const STILL: f64 = 0.05;
 
+/// The same of a track whose way is at most so many of its steps: it trembles around one place.
+const TREMBLING: f64 = 0.2;
+const NOISE: f64 = 8.0;
+
 /// Removes tracks of one table that hardly move beside the others, such as fixed marks on the picture.
 pub(super) fn without_still(mut tracks: Vec<Track>) -> Vec<Track> {
     let way = |track: &Track| {
@@ -74,9 +80,25 @@ pub(super) fn without_still(mut tracks: Vec<Track>) -> Vec<Track> {
         ends[1] - ends[0]
     };
     let farthest = tracks.iter().map(way).fold(0.0, f64::max);
-    let is_still = |track: &Track| way(track) < STILL * farthest;
-    let still: Vec<String> =
-        tracks.iter().filter(|one| is_still(one)).map(|one| one.vertical.name.clone()).collect();
+    let step = |track: &Track| {
+        let steps = track.samples.windows(2).map(|pair| (pair[1].z - pair[0].z).abs());
+        median(steps).unwrap_or(0.0)
+    };
+    let is_noise = |track: &Track| way(track) < NOISE * step(track);
+    let is_still = |track: &Track| {
+        let share = if is_noise(track) { TREMBLING } else { STILL };
+        way(track) < share * farthest
+    };
+    if tracks.iter().all(is_still) {
+        return tracks;
+    }
+    // Tracks of one column have names.
+    let is_one_column = tracks.iter().all(|one| one.vertical.name == tracks[0].vertical.name);
+    let name = |one: &Track| match &one.name {
+        Some(name) if is_one_column => name.clone(),
+        _ => one.vertical.name.clone(),
+    };
+    let still: Vec<String> = tracks.iter().filter(|one| is_still(one)).map(name).collect();
     tracks.retain(|track| !is_still(track));
     if let (Some(first), false) = (tracks.first_mut(), still.is_empty()) {
         first.notes.push(format!("{}: it does not move, left out", still.join(", ")));

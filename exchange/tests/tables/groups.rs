@@ -160,3 +160,36 @@ fn a_folder_or_a_word_that_is_called_like_a_body_says_the_body() {
         &["no name, folder or column `body` says which of steel, wax, big wax, 1 it is"],
     );
 }
+
+#[test]
+fn versions_that_number_repeats_are_asked_for() {
+    let name = |at: usize| format!("fall{}_v{}.csv", ["low", "high"][at / 2], at % 2);
+    let tables: Vec<(String, String)> =
+        (0..4).map(|at| (name(at), table([0.05, 0.2][at / 2], 1.0, at as u64))).collect();
+    let set = of_folder(&tables, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        says(&set, "have a condition each, and by their speeds 2 conditions"),
+        "{:?}",
+        set.notes
+    );
+    let of = [("condition", "{condition}_v{repeat}")];
+    let set = of_folder(&tables, &of).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(conditions(&set), ["falllow", "falllow", "fallhigh", "fallhigh"]);
+    assert!(!says(&set, "have a condition each"));
+}
+
+#[test]
+fn an_option_that_a_column_contradicts_is_told_and_decimal_commas_of_columns_are_read() {
+    let one = drop_onto(1.0, Meets::Whole, 0.1, Camera::USUAL);
+    let mut text = String::from("Durchmesser [mm];Masse [g];t [s];z [mm]\n");
+    for (t, z) in &one.readings {
+        let _ = writeln!(text, "{}", format!("20.5;11.5;{t:.5};{:.3}", 1e3 * z).replace('.', ","));
+    }
+    let tables = [("a.csv".to_owned(), text)];
+    let set = of_folder(&tables, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        says(&set, "--diameter 25.4 mm is taken for all runs, though a column has 20.5 mm for a"),
+        "{:?}",
+        set.notes
+    );
+}

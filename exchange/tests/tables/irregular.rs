@@ -256,3 +256,50 @@ fn numbers_as_programs_write_them() {
     let spaced = |_: usize, t: f64, z: f64| format!("{t:.5}  {z:.3}");
     read(&table("% columns: t [s]  z [mm]", &drops[0], spaced), "one drop, blanks");
 }
+
+#[test]
+fn a_slow_clip_whose_fall_fits_a_smaller_world_is_refused() {
+    let drops = formats::two();
+    // Taken at 960 frames a second, played at 30, in metres: the fall is that of mm and ms.
+    let slow =
+        table("t,y", &drops[0], |_, t, z| format!("{:.5},{:.6}", t * 960.0 / 30.0, 1e-3 * z));
+    let refused = told("a.csv", &slow, &[]);
+    has(&refused, &["nothing states the units of `t` and `y`", "mm into the bed", "--rate 1000Hz"]);
+}
+
+#[test]
+fn a_body_that_leaves_the_bed_again_is_named() {
+    let drops = formats::two();
+    // From 40 ms behind contact on it rises to 15 mm above the surface.
+    let flight = drops[0].contact + 0.04;
+    let text = table("t (s),z (mm)", &drops[0], |_, t, z| {
+        let up = t - flight;
+        let rise = if (0.0..0.4).contains(&up) {
+            45.0 * (std::f64::consts::PI * up / 0.4).sin()
+        } else {
+            0.0
+        };
+        format!("{t:.5},{:.3}", z + rise)
+    });
+    let set = crate::layouts::of_text("a.csv", text.as_bytes(), &[]).expect("a set");
+    let is_told = |part: &str| set.notes.iter().any(|note| note.contains(part));
+    assert!(is_told("rises above the surface again in a ("), "{:?}", set.notes);
+}
+
+#[test]
+fn a_spot_that_trembles_around_one_place_is_no_drop() {
+    let drops = formats::two();
+    let mut text = formats::trackmate(&drops);
+    let mut noise = crate::world::Noise(3);
+    for k in 0..40 {
+        let [x, y] = [80.0, 140.0].map(|at| at + 4.0 * noise.normal());
+        let t = f64::from(k) / 650.0;
+        let _ = writeln!(text, "ID{k},{k},7,3.1,{x:.3},{y:.3},0.0,{t:.6},{k},5.0,1");
+    }
+    let set = check("a.csv", &text, &[("scale", "0.2mm/px")], &drops, "TrackMate");
+    assert!(
+        set.notes.iter().any(|note| note.contains("track7: it does not move")),
+        "{:?}",
+        set.notes
+    );
+}

@@ -11,7 +11,7 @@ pub const STRENGTHS: [f64; 3] = [0.03, 0.06, 0.12];
 const MIDDLE: f64 = 0.08;
 
 /// The first seed of a release table, drawn at random for each.
-const RELEASE: u64 = (1 << 60) + 0xc081_4f04_900f;
+const RELEASE: u64 = (1 << 60) + 0x10b9_a087_5580;
 
 /// Strength of each effect of a pair.
 const OF_PAIR: f64 = 0.09;
