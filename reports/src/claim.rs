@@ -75,7 +75,8 @@ pub fn sentence(diagnosis: &Value) -> String {
             let goes = if falls(diagnosis) { "falls" } else { "goes" };
             let held_out = held_out(diagnosis);
             let error = format!(
-                "error on {held_out} {goes} from {before} to {after}, where the noise is {noise}"
+                "error on {held_out} {goes} from {before} to {after}, where the noise is {noise}{}",
+                weighed(diagnosis)
             );
             match diagnosis["holdout"]["explained"].as_f64().filter(|share| *share > 0.0) {
                 Some(share) => {
@@ -169,6 +170,18 @@ fn is_one_of_many(diagnosis: &Value) -> bool {
 fn falls(diagnosis: &Value) -> bool {
     let [before, after] = ["before", "after"].map(|key| diagnosis["holdout"][key].as_f64());
     before > after
+}
+
+/// The error in units of what is expected, where the error itself does not fall.
+fn weighed(diagnosis: &Value) -> String {
+    let [before, after] =
+        ["before", "after"].map(|key| diagnosis["holdout"]["weighed"][key].as_f64());
+    match before.zip(after) {
+        Some((before, after)) if !falls(diagnosis) => format!(
+            "; in units of the noise and of the uncertainty of each prediction it goes from {before:.2} to {after:.2}"
+        ),
+        _ => String::new(),
+    }
 }
 
 /// The amplitudes with their intervals.
@@ -365,6 +378,13 @@ mod tests {
         let svg = bars(&diagnosis).expect("bars");
         // Lengths go as the errors: 200 pixels for the largest.
         assert!(svg.contains("width=\"200\"") && svg.contains("width=\"22\""), "{svg}");
+        let mut hidden = diagnosis.clone();
+        hidden["holdout"]["after"] = json!(1.2e-3);
+        hidden["holdout"]["weighed"] = json!({ "before": 1.62, "after": 0.907 });
+        assert!(sentence(&hidden).contains("goes from 1.090 mm to 1.200 mm"));
+        assert!(
+            sentence(&hidden).contains("uncertainty of each prediction it goes from 1.62 to 0.91")
+        );
         let mut without = diagnosis;
         without["amplitudes"] = json!([]);
         assert!(!bars(&without).expect("bars").contains("with the effect"));
