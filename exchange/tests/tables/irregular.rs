@@ -274,11 +274,8 @@ fn a_body_that_leaves_the_bed_again_is_named() {
     let flight = drops[0].contact + 0.04;
     let text = table("t (s),z (mm)", &drops[0], |_, t, z| {
         let up = t - flight;
-        let rise = if (0.0..0.4).contains(&up) {
-            45.0 * (std::f64::consts::PI * up / 0.4).sin()
-        } else {
-            0.0
-        };
+        let rise =
+            if (0.0..0.4).contains(&up) { 180.0 * (up / 0.4) * (1.0 - up / 0.4) } else { 0.0 };
         format!("{t:.5},{:.3}", z + rise)
     });
     let set = crate::layouts::of_text("a.csv", text.as_bytes(), &[]).expect("a set");
