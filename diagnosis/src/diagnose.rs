@@ -105,9 +105,6 @@ fn ranked_by<'a>(
 }
 
 /// What there is to say of the model as it is, before any effect is looked for.
-///
-/// # Errors
-/// If the model fails.
 pub(crate) fn as_it_is(problem: &FitProblem<'_>, seed: u64) -> Result<Diagnosis, FitError> {
     let baseline = match problem.fit(&Point::start(problem.forward)) {
         Ok(fitted) => fitted,
@@ -169,9 +166,6 @@ pub fn seek_missing_force(
 }
 
 /// Takes back what `diagnosis` names, since `why`: what is left is whether the model as it is explains the data.
-///
-/// # Errors
-/// If the model fails.
 pub(crate) fn withdraw(
     problem: &FitProblem<'_>,
     diagnosis: Diagnosis,

@@ -176,9 +176,6 @@ impl Data<'_> {
 
     /// Fits the parameters and the amplitudes of the effects of `start` as their formulas have them: a fall of χ² by one
     /// amplitude is not that by several numbers of its form.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated at the start or at the end.
     pub(crate) fn fit_as_listed(&self, start: &Point) -> Result<Fit, PredictError> {
         self.fit_but(start, &self.scales(start), self.forms(start))
     }
@@ -187,9 +184,6 @@ impl Data<'_> {
     /// as it is stated. The derivatives by errors of the apparatus are those of `near`, a fit to the same measurements under
     /// the same weights. A search by all of them from there may end
     /// where errors of the apparatus make up for a law.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated at the start or at the end.
     pub(crate) fn fit_with_apparatus_as_stated(
         &self,
         candidate: usize,
@@ -213,9 +207,6 @@ impl Data<'_> {
     }
 
     /// What a fit as listed would be that ends at `point`.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated there.
     pub(crate) fn as_listed_at(&self, point: Point) -> Result<Fit, PredictError> {
         let held = self.forms(&point);
         self.ending_at(point, held)
@@ -223,9 +214,6 @@ impl Data<'_> {
 
     /// Fits as listed, with the covariance that numbers of a form have around it: what a fit predicts elsewhere holds
     /// what its form leaves open.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated at the start or at the end.
     pub(crate) fn fit_as_listed_within_forms(&self, start: &Point) -> Result<Fit, PredictError> {
         let point = self.fit_as_listed(start)?.point;
         let held = vec![false; point.parameters.len() + point.effects.len()];
@@ -370,9 +358,6 @@ impl Data<'_> {
 
     /// Whitened derivative of the prediction at `point` by the unknowns of `fit` that are not held at
     /// a bound.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated there.
     pub(crate) fn jacobian(&self, fit: &Fit) -> Result<DMatrix<f64>, PredictError> {
         self.derivative(&fit.point, &self.scales(&fit.point), &fit.free, &|_| None)
     }

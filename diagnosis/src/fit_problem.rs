@@ -137,9 +137,6 @@ impl FitProblem<'_> {
     }
 
     /// Likewise, with the noise searched from `noise`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub(crate) fn fit_from(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
         let mut fitted = self.fit_once(start, noise)?;
         for _ in 1..ROUNDS {
@@ -153,9 +150,6 @@ impl FitProblem<'_> {
     }
 
     /// One round from `start`, with the noise searched from `noise`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub(crate) fn fit_once(&self, start: &Point, noise: &Noise) -> Result<Fitted, FitError> {
         let (sensitivities, mut noise) = self.scatter(start, noise)?;
         let weigh = |noise: &Noise| -> Result<Vec<Weight>, FitError> {
@@ -196,9 +190,6 @@ impl FitProblem<'_> {
     }
 
     /// `fitted` again, under its noise with a scatter between conditions of `sd`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub(crate) fn with_scatter_between_conditions(
         &self,
         sd: f64,
@@ -209,9 +200,6 @@ impl FitProblem<'_> {
     }
 
     /// `fitted` again, with angles of single conditions that are off by `sd` (rad); `None` where they are off by no more.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub(crate) fn with_angles_within(
         &self,
         sd: f64,
@@ -255,9 +243,6 @@ impl FitProblem<'_> {
 
     /// `fitted` again with conditions of sessions of their own that differ as is known beforehand; `None` where the set
     /// says its sessions, and where their scatter was learned.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub(crate) fn with_sessions_of_their_own(
         &self,
         fitted: &Fitted,

@@ -163,9 +163,6 @@ impl HeldOut {
 
     /// The same to judge by. Where the model as it is predicts the held-out conditions to the noise, these conditions show
     /// no effect, whatever is missing: each of the others is left out in turn as well.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub(crate) fn judging(
         problem: &FitProblem<'_>,
         before: &Fitted,

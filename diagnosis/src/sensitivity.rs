@@ -43,9 +43,6 @@ impl Point {
     }
 
     /// A run with `scatter`.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated there.
     pub(crate) fn predict_run(
         &self,
         forward: &dyn Forward,
@@ -290,9 +287,6 @@ pub enum Direction {
 
 /// Change of the observables by a force around each of `nodes` equally spaced depths from the surface
 /// to `reach` (m), in units of the resistance; one column per node, zero where the model cannot be integrated with it.
-///
-/// # Errors
-/// If the model cannot be integrated at `point` itself.
 pub(crate) fn force_response(
     point: &Point,
     forward: &dyn Forward,

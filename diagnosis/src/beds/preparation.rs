@@ -282,9 +282,6 @@ impl Preparation {
 }
 
 /// The unit of a bulk density of `stated`, where the model's is `own` and both can be meant in it.
-///
-/// # Errors
-/// Where they are so far apart that `stated` is in another unit.
 fn of_one_unit(stated: f64, own: f64, geometry: Geometry) -> Result<&'static str, BedError> {
     let unit = match geometry {
         Geometry::Planar => "kg/m^2",

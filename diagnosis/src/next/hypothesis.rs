@@ -125,9 +125,6 @@ impl Hypothesis {
 
 impl Placed {
     /// What it expects of condition `condition` under `weight`.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated.
     pub(super) fn expects(
         &self,
         forward: &dyn Forward,

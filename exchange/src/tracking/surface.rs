@@ -157,9 +157,6 @@ impl Touch {
 
 /// The error (m) of levels that are stated, by how far from them the contacts are: of all runs together where they agree,
 /// else of each.
-///
-/// # Errors
-/// If contacts are too far from there.
 fn error_of_stated(runs: &[Seen]) -> Result<f64, Vec<Fault>> {
     let below = |run: &Seen| Some(run.departure.below(run.stated?));
     let all: Vec<Departure> = runs.iter().filter_map(below).collect();
@@ -185,9 +182,6 @@ fn error_of_stated(runs: &[Seen]) -> Result<f64, Vec<Fault>> {
 }
 
 /// The error (m) of a level that contacts, as that of `run`, miss by `miss` (m).
-///
-/// # Errors
-/// If it cannot be that level.
 fn error_of_one(who: &str, miss: Reading, run: &Seen) -> Result<f64, Fault> {
     let Seen { soft, diameter, below_centre, .. } = *run;
     let error = OFF.1 * miss.se;

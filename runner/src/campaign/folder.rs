@@ -124,9 +124,6 @@ impl Folder {
     }
 
     /// Nothing, if it holds `plan`.
-    ///
-    /// # Errors
-    /// If it holds none, or another.
     fn holds(&self, plan: &Plan) -> Result<(), FolderError> {
         let (file, folder) = (self.path.join(PLAN), self.path.clone());
         match fs::read(&file) {
