@@ -38,8 +38,7 @@ const LIKELIER: f64 = 15.0;
 const NOT_ANY: f64 = 10.0;
 
 /// The same of one effect that explains the data: of some twenty effects, each fitted, the best exceeds by 5 or so by chance.
-/// In simulated sets, effects that are there do by 6 at least, and effects that only resemble the force that is there by 5 at
-/// most.
+/// In simulated sets, effects that are there do by 6 at least, and few effects that only resemble the force that is there do.
 const NEAREST: f64 = 6.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.

@@ -277,11 +277,7 @@ pub fn as_markdown(plan: &Plan, results: &Results) -> String {
         );
     }
     if let Some(crossover) = Crossover::of(&sharing(results)) {
-        let _ = writeln!(
-            text,
-            "- Two ranks of LAMMPS overtake two threads of plunge in space {}.",
-            crossover.text()
-        );
+        let _ = writeln!(text, "- In space, two ranks of LAMMPS {}.", crossover.text());
     }
     if let Some(bytes) = memory_per_further_grain(results) {
         let _ = writeln!(text, "- Memory: {bytes:.0} byte for each grain more in space.");
@@ -418,7 +414,12 @@ mod tests {
         assert_eq!(json["crossover"], json!({ "ranks_overtake": "from", "grains": 1000 }));
         let page = as_markdown(&plan, &results);
         assert!(page.contains("two threads (ranks): 3d-12k 75.0 % (100.0 %)."), "{page}");
-        assert!(page.contains("in space from the smallest bed on, of 1000 grains"), "{page}");
+        assert!(
+            page.contains(
+                "are faster than plunge's two threads from the smallest bed on, of 1000 grains"
+            ),
+            "{page}"
+        );
     }
 
     #[test]

@@ -74,9 +74,15 @@ impl Crossover {
     /// In words.
     pub(super) fn text(self) -> String {
         match self {
-            Self::From(grains) => format!("from the smallest bed on, of {grains} grains"),
-            Self::Near(grains) => format!("near {grains} grains"),
-            Self::NotUpTo(grains) => format!("not up to {grains} grains"),
+            Self::From(grains) => format!(
+                "are faster than plunge's two threads from the smallest bed on, of {grains} grains"
+            ),
+            Self::Near(grains) => {
+                format!("become faster than plunge's two threads near {grains} grains")
+            }
+            Self::NotUpTo(grains) => {
+                format!("are slower than plunge's two threads up to {grains} grains")
+            }
         }
     }
 }
