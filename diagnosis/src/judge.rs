@@ -37,8 +37,8 @@ const LIKELIER: f64 = 15.0;
 /// Log odds by which two effects, or one that hardly explains the data, have to exceed a force of any form.
 const NOT_ANY: f64 = 10.0;
 
-/// The same of one effect that explains the data: of some twenty effects, each fitted, the best exceeds by 5 or so by chance.
-/// In simulated sets, effects that are there do by 6 at least, and few effects that only resemble the force that is there do.
+/// The same of one effect that explains the data: ln 20 for the choice among some twenty effects, and as much for its amplitude,
+/// which is fitted. In simulated sets, effects that are there do by 6 at least, and few effects that only resemble the force that is there do.
 const NEAREST: f64 = 6.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.
@@ -226,22 +226,20 @@ impl Judge<'_> {
     }
 
     /// Whether the best effect is only the nearest of the listed effects: a force of any form is about as likely. The odds have
-    /// to be larger if the effect leaves a part of the error, or if few conditions show it. Otherwise, effects that are not
-    /// told apart need no odds, since they are several forms themselves, nor does an effect that takes most of a clear error.
+    /// to be larger if few conditions show the effect, or if it leaves a part of the error that its predictions do not allow.
+    /// Effects that leave none and are not told apart need no odds, since they are several forms themselves, nor does one that
+    /// takes most of a clear error.
     fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, FitError> {
         let is_misfit = p.is_some_and(|p| p <= DOUBTFUL);
         let leaves_more = held_out.leaves_more_than_noise() == Some(true);
         let leaves = held_out.leaves_a_part() && (is_misfit || leaves_more);
         let explains = !is_misfit && (!leaves || held_out.leaves_what_is_expected());
-        if !leaves && (self.alike.len() > 1 || held_out.takes_most()) && !held_out.is_shown_by_few()
-        {
-            return Ok(false);
-        }
-        let least = match explains {
-            _ if held_out.is_shown_by_few() => LIKELIER,
-            true => NEAREST,
-            false if leaves => LIKELIER,
-            false => NOT_ANY,
+        let least = match () {
+            () if held_out.is_shown_by_few() => LIKELIER,
+            () if !leaves && (self.alike.len() > 1 || held_out.takes_most()) => return Ok(false),
+            () if explains => NEAREST,
+            () if leaves => LIKELIER,
+            () => NOT_ANY,
         };
         self.is_no_likelier(&self.leader, least)
     }

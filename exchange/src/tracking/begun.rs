@@ -8,7 +8,7 @@ use super::grid::{NAMED_ROWS, NO_NUMBERS, NO_TIMES};
 use super::motion::{FEWEST, Path};
 use super::names::{SET, is_of_run};
 use super::settings::Settings;
-use super::track::{Track, without_still};
+use super::track::Track;
 use super::{inputs, layouts};
 
 /// A run whose path is known, and nothing of the others.
@@ -71,7 +71,7 @@ fn of_file(path: &File, bytes: &[u8], settings: &Settings<'_>) -> Result<Vec<Tra
     for sheet in inputs::sheets(path, bytes)? {
         match layouts::tracks(&sheet, &settings.columns) {
             Ok(found) => {
-                let found = without_still(without_short(found)).into_iter();
+                let found = without_short(found).into_iter();
                 tracks.extend(found.map(|track| named(track, path)));
             }
             Err(fault) => faults.push(fault),

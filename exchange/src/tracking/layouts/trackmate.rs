@@ -5,7 +5,7 @@ use crate::tracking::fault::Fault;
 use crate::tracking::grid::{Grid, Places};
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Row, Sheet};
-use crate::tracking::track::Track;
+use crate::tracking::track::{Track, without_still};
 use crate::tracking::units::Unit;
 
 pub(super) const LAYOUT: Layout = Layout { fits, read };
@@ -58,7 +58,7 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
         Ok(Track { name: Some(format!("track{name}")), ..track })
     };
     let tracks: Result<Vec<Track>, Fault> = names.into_iter().map(one).collect();
-    Ok(named_if_several(tracks?))
+    Ok(named_if_several(without_still(tracks?)))
 }
 
 /// A table of one track is called by its own name.
