@@ -6,7 +6,7 @@ use std::path::Path;
 
 use configs::printable;
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::FitProblem;
+use diagnosis::fit::problem::FitProblem;
 use diagnosis::next::{FollowUp, follow_up};
 use diagnosis::observed::Observed;
 use measurements::{MeasurementSet, Run};

@@ -10,7 +10,7 @@ use diagnosis::beds::{
     diagnose_bed, unaffordable,
 };
 use diagnosis::compare::Comparison;
-use diagnosis::fit_problem::FitProblem;
+use diagnosis::fit::problem::FitProblem;
 use engine::units::{self, Dimension};
 use runner::beds::{Impacts, Place};
 use runner::{CampaignError, Elsewhere};

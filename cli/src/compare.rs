@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use diagnosis::compare::{Comparison, ModelComparison, Revision, compare};
-use diagnosis::error_columns::named;
 use diagnosis::forward::Forward;
+use diagnosis::misfit::residual::Residual;
+use diagnosis::observed::error_columns::named;
 use diagnosis::picture;
-use diagnosis::residual::Residual;
 use measurements::{Axis, MeasurementSet};
 use reports::tables;
 use serde_json::{Value, json};

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use configs::edit::add_effects;
 use diagnosis::calibrate::{Calibration, Size, calibrate};
 use diagnosis::diagnose::{diagnose, seek_missing_force};
-use diagnosis::fit_problem::FitProblem;
+use diagnosis::fit::problem::FitProblem;
 use diagnosis::missing_force::FOUND;
 use diagnosis::next::recommend;
 use diagnosis::verdict::{Diagnosis, Verdict};

@@ -1,8 +1,8 @@
 //! A diagnosis as `plunge diagnose` prints it, and what is written with it.
 
 use diagnosis::calibrate::Calibration;
-use diagnosis::fit_problem::FitProblem;
-use diagnosis::held_out::{Fails, LeftOut};
+use diagnosis::fit::problem::FitProblem;
+use diagnosis::misfit::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 use diagnosis::where_it_fails::{WhereItFails, files_of};

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use configs::{LoadOptions, Loaded, Model};
-use diagnosis::fit_problem::FitError;
+use diagnosis::fit::problem::FitError;
 use diagnosis::missing_force;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;

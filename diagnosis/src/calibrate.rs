@@ -13,11 +13,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::diagnose::verdict;
-use crate::fit_problem::{FitError, FitProblem, Fitted};
+use crate::fit::problem::{FitError, FitProblem, Fitted};
+use crate::forward::sensitivity::Point;
 use crate::forward::{ParameterKind, Scatter};
 use crate::observed::{Observed, ObservedCondition};
 use crate::random::{Purpose, normal, stream};
-use crate::sensitivity::Point;
 use crate::verdict::{Counted, Diagnosis, Probability, Status, Verdict};
 
 /// How many sets are simulated.

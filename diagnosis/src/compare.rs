@@ -5,17 +5,17 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use thiserror::Error;
 
-use crate::errors::Errors;
-use crate::fit_problem::{FitError, FitProblem, Fitted};
-use crate::fitted_parameters::parameters;
-use crate::force_error::ForceError;
+use crate::fit::fitted_parameters::parameters;
+use crate::fit::problem::{FitError, FitProblem, Fitted};
 use crate::forward::Forward;
-use crate::lack_of_fit::lack_of_fit;
+use crate::forward::sensitivity::Point;
+use crate::misfit::errors::Errors;
+use crate::misfit::force_error::ForceError;
+use crate::misfit::lack_of_fit::lack_of_fit;
+use crate::misfit::residual::{Unpredicted, predictable};
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
-use crate::residual::{Unpredicted, predictable};
 use crate::rounding::{six_digits, six_digits_or_null};
-use crate::sensitivity::Point;
 use crate::verdict::ApparatusError;
 use crate::where_it_fails::{Failing, WhereItFails};
 

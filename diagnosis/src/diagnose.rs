@@ -6,19 +6,19 @@
 
 use std::cell::OnceCell;
 
-use crate::fit_problem::{FitError, FitProblem, Fitted};
-use crate::fitted_parameters::parameters;
-use crate::held_out::HeldOut;
-use crate::judge::{Grounds, Judge, adequate, cannot_tell, nothing, unexplained};
-use crate::lack_of_fit::lack_of_fit;
-use crate::marginal::{Marginals, marginals};
+use crate::fit::fitted_parameters::parameters;
+use crate::fit::problem::{FitError, FitProblem, Fitted};
+use crate::forward::sensitivity::Point;
+use crate::misfit::held_out::HeldOut;
+use crate::misfit::lack_of_fit::lack_of_fit;
 use crate::missing_force::{any_force, described};
 use crate::noise::Noise;
-use crate::score::Ranking;
-use crate::sensitivity::Point;
+use crate::ranking::marginal::{Marginals, marginals};
+use crate::ranking::score::Ranking;
+use crate::verdict::judge::{Grounds, Judge, adequate, cannot_tell, nothing, unexplained};
 use crate::verdict::{ApparatusError, Diagnosis, Strength, Verdict};
 
-pub use crate::judge::ALPHA;
+pub use crate::verdict::judge::ALPHA;
 
 /// How often weights and ranking are taken in turn: the weights are those along the best model.
 const ROUNDS: usize = 2;

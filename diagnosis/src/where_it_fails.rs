@@ -13,12 +13,12 @@ use measurements::MeasurementSet;
 pub use self::files::{FILES, FilesError, MISSING_FORCE, files_of};
 pub use self::signature::Signature;
 
-use crate::errors::Errors;
-use crate::fit_problem::{FitError, FitProblem, Fitted};
-use crate::force_error::ForceErrors;
-use crate::noise_floor::noise_floor;
+use crate::fit::problem::{FitError, FitProblem, Fitted};
+use crate::misfit::errors::Errors;
+use crate::misfit::force_error::ForceErrors;
+use crate::misfit::noise_floor::noise_floor;
+use crate::misfit::residual::{Residual, predictable, residuals};
 use crate::observed::Observed;
-use crate::residual::{Residual, predictable, residuals};
 use crate::verdict::Diagnosis;
 
 /// How one model fails.

@@ -1,8 +1,8 @@
 //! The claim of a diagnosis: one sentence, and one picture beside it.
 
 use diagnosis::diagnose::ALPHA;
-use diagnosis::error_unit::Unit;
-use diagnosis::held_out::LeftOut;
+use diagnosis::misfit::error_unit::Unit;
+use diagnosis::misfit::held_out::LeftOut;
 use diagnosis::verdict::Verdict;
 use plots::sheet::{Anchor, Layer, Mark, Sheet};
 use serde::Deserialize;

@@ -1,6 +1,6 @@
 //! The report of a comparison: how wrong each revision of a model is, and where.
 
-use diagnosis::error_columns::{Column, columns};
+use diagnosis::observed::error_columns::{Column, columns};
 use serde_json::Value;
 
 use crate::figure::figure;

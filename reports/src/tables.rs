@@ -1,7 +1,7 @@
 //! The tables of a comparison and of a diagnosis, for pages and terminals alike.
 
-use diagnosis::error_columns::{Column, columns, named};
-use diagnosis::observable::Observable;
+use diagnosis::forward::observable::Observable;
+use diagnosis::observed::error_columns::{Column, columns, named};
 use serde_json::{Map, Value};
 
 use crate::numbers::{fixed, four_digits, list, probability, text, texts};

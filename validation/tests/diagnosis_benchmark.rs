@@ -2,11 +2,11 @@
 
 use diagnosis::calibrate::{self, calibrate};
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::forward::sensitivity::Point;
 use diagnosis::missing_force::{Reading, missing_force};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
-use diagnosis::sensitivity::Point;
 use diagnosis::verdict::{Diagnosis, Status, Verdict};
 use measurements::{MeasurementSet, ParameterPrior};
 use validation::benchmark::design::Design;

@@ -17,14 +17,14 @@ use thiserror::Error;
 use super::bed_model::BedModel;
 use super::modes::Modes;
 use super::observables::observables;
-use crate::fit_problem::{FitError, FitProblem, Fitted};
+use crate::fit::problem::{FitError, FitProblem, Fitted};
+use crate::forward::observable::Layout;
+use crate::forward::sensitivity::Point;
 use crate::forward::{Forward, Moment, Passages, PredictError, Request, Scatter};
 use crate::noise::Noise;
-use crate::observable::Layout;
+use crate::observed::reading_error::reading;
 use crate::observed::{Observed, ObservedCondition, reach};
-use crate::reading_error::reading;
 use crate::resistive::{ForwardError, ResistiveForward};
-use crate::sensitivity::Point;
 
 /// The force law that stands in.
 const STAND_IN: &str = "two-term-vector";

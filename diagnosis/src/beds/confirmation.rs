@@ -9,15 +9,15 @@ use super::bed_model::BedModel;
 use super::emulator::BedForward;
 use super::error::BedError;
 use super::observables::observables;
-use crate::error_unit::Unit;
-use crate::errors::Sums;
 use crate::fit::Fit;
-use crate::fit_problem::FitError;
-use crate::held_out::{Fails, HeldOut, LeftOut, NotPredicted};
-use crate::noise_floor::standard_errors;
+use crate::fit::problem::FitError;
+use crate::forward::sensitivity::Point;
+use crate::misfit::error_unit::Unit;
+use crate::misfit::errors::Sums;
+use crate::misfit::held_out::{Fails, HeldOut, LeftOut, NotPredicted};
+use crate::misfit::noise_floor::standard_errors;
 use crate::observed::Observed;
 use crate::rounding::rounded;
-use crate::sensitivity::Point;
 
 /// What impacts on fresh beds say.
 #[derive(Clone, Debug)]

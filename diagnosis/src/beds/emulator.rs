@@ -13,12 +13,12 @@ use super::preparation::is_far;
 use super::response::Response;
 use super::shared::Shared;
 use crate::fit::Fit;
+use crate::forward::sensitivity::Point;
 use crate::forward::{
     Candidate, Forward, Moment, Parameter, ParameterKind, Passages, PredictError, Request, Scatter,
 };
-use crate::noise_floor::noise_floor;
+use crate::misfit::noise_floor::noise_floor;
 use crate::rounding::rounded;
-use crate::sensitivity::Point;
 
 /// So many times the amplitude that was screened, what was found there is extrapolated: far enough for a
 /// search to begin with.

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::baseline::BaselineError;
 use super::bed_model::BedModelError;
-use crate::fit_problem::FitError;
+use crate::fit::problem::FitError;
 
 /// Why there is no comparison or diagnosis.
 #[derive(Debug, Error)]

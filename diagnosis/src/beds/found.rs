@@ -11,11 +11,11 @@ use super::located::Located;
 use super::plan::Plan;
 use super::variation::Variation;
 use crate::diagnose::seek_missing_force;
-use crate::fit_problem::{FitError, FitProblem};
-use crate::fitted_parameters::parameters;
+use crate::fit::fitted_parameters::parameters;
+use crate::fit::problem::{FitError, FitProblem};
+use crate::forward::sensitivity::Point;
 use crate::observed::Observed;
 use crate::rounding::rounded;
-use crate::sensitivity::Point;
 use crate::verdict::{Diagnosis, Verdict};
 
 /// A diagnosis of a bed of grains.

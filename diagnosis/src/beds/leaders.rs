@@ -3,7 +3,7 @@
 use super::emulator::BedForward;
 use super::plan::{LEADERS, SEARCHES};
 use crate::forward::Forward;
-use crate::held_out::HeldOut;
+use crate::misfit::held_out::HeldOut;
 use crate::verdict::{Diagnosis, Verdict};
 
 /// Whether one effect is ahead of all others.

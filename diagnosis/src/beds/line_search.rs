@@ -9,7 +9,7 @@ use super::bed_candidate::BedCandidate;
 use super::bed_model::{BedModel, BedModelError, Draw};
 use super::observables::observables;
 use super::response::{BetweenDraws, Line, Response, deviations};
-use crate::observable::Layout;
+use crate::forward::observable::Layout;
 
 /// Amplitudes in that of the guess.
 const SHARES: [f64; 3] = [0.5, 1.0, 1.5];

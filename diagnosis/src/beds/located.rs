@@ -4,12 +4,12 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use serde_json::{Map, Value, json};
 
 use super::emulator::BedForward;
-use crate::fit_problem::{FitError, FitProblem, Fitted};
+use crate::fit::problem::{FitError, FitProblem, Fitted};
 use crate::forward::Prior;
-use crate::marginal::between;
+use crate::forward::sensitivity::Point;
 use crate::noise::Noise;
+use crate::ranking::marginal::between;
 use crate::rounding::rounded;
-use crate::sensitivity::Point;
 
 /// A coefficient whose relative change is known to no better than this is not said.
 const KNOWN: f64 = 0.5;

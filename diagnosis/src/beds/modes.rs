@@ -8,7 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::observable::Observable;
+use crate::forward::observable::Observable;
 use crate::observed::{Observed, ObservedCondition};
 
 /// Modes at most: a handful of runs knows no more.

@@ -4,7 +4,7 @@ use measurements::{Condition, FinalDefinition, MeasurementSet, StopDefinition, S
 use nalgebra::DVector;
 use runner::beds::Record;
 
-use crate::observable::{Layout, Observable};
+use crate::forward::observable::{Layout, Observable};
 
 /// Depth and range (m) at `time` (s), as `set` counts depths: before contact those of the fall under `condition`, behind the
 /// end the last ones.
@@ -70,7 +70,7 @@ pub fn observables(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observable::Curve;
+    use crate::forward::observable::Curve;
     use crate::test_sets::{condition, set};
     use measurements::Kind;
 

@@ -13,7 +13,7 @@ use super::preparation::at_level;
 use super::screening::Screening;
 use super::variation::Variation;
 use crate::observed::Observed;
-use crate::series::evenly;
+use crate::observed::series::evenly;
 use crate::verdict::Diagnosis;
 
 /// How many effects a line search and a confirmation take up.

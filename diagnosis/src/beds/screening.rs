@@ -13,7 +13,7 @@ use super::emulator::Screened;
 use super::observables::observables;
 use super::response::Response;
 use super::variation::Variation;
-use crate::observable::Layout;
+use crate::forward::observable::Layout;
 
 /// Runs and their mirrors on one draw of a bed: so many pairs that the draw cancels from every main effect
 /// without a bed of its own for each.

@@ -8,9 +8,9 @@ use nalgebra::{DMatrix, DVector};
 use measurements::MeasurementSet;
 
 use super::baseline::StandIn;
-use crate::apparatus::Apparatus;
+use crate::forward::apparatus::Apparatus;
+use crate::forward::observable::Layout;
 use crate::forward::{Parameter, PredictError, Scatter};
-use crate::observable::Layout;
 
 /// Shared parameters and how the observables follow them.
 #[derive(Clone, Debug, Default)]

@@ -10,8 +10,8 @@ use super::error::BedError;
 use super::plan::Plan;
 use super::preparation::Preparation;
 use crate::diagnose::diagnose;
-use crate::fit_problem::FitProblem;
-use crate::observable::Layout;
+use crate::fit::problem::FitProblem;
+use crate::forward::observable::Layout;
 use crate::observed::Observed;
 use crate::verdict::Diagnosis;
 

@@ -19,14 +19,14 @@ use super::response::correlation_of_pairs;
 use super::shared::{Column, Shared};
 use super::variation::Variation;
 use super::work::{Standing, Work};
-use crate::apparatus::is_looked_for;
 use crate::diagnose::{ALPHA, as_it_is, withdraw};
 use crate::fit::Fit;
-use crate::fit_problem::{FitError, FitProblem};
+use crate::fit::problem::{FitError, FitProblem};
+use crate::forward::apparatus::is_looked_for;
 use crate::forward::{Parameter, ParameterKind};
-use crate::frequency::of_bed_benchmark;
-use crate::held_out::HeldOut;
+use crate::misfit::held_out::HeldOut;
 use crate::observed::Observed;
+use crate::verdict::frequency::of_bed_benchmark;
 use crate::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 
 /// Where they correlate more than this, effects are screened one at a time: what each does alone is worth

@@ -1,7 +1,7 @@
 //! How the unknowns of a fit are searched: which as they are, which by their logarithms.
 
+use crate::forward::sensitivity::Point;
 use crate::forward::{Candidate, Parameter};
-use crate::sensitivity::Point;
 
 /// Share of its start below which a parameter without a sign is searched as it is: a logarithm never comes to zero, and
 /// from next to zero never back.

@@ -8,8 +8,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::process::{Averaged, Process, alike};
 use super::response::Response;
-use crate::field::{Grid, Scaled};
 use crate::fit::Fit;
+use crate::forward::field::{Grid, Scaled};
 
 /// Sizes over that of the model's force, and lengths over the extent of each axis, that are tried.
 const SIZES: [f64; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];

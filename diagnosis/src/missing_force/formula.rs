@@ -12,12 +12,12 @@ use resistive::{Acts, Direction, Draft, OwnParameter};
 use super::library::library;
 use super::response::Response;
 use super::term::{MILLIMETRE, State, Term, short};
-use crate::field::{Field, Grid};
 use crate::fit::Fit;
-use crate::fit_problem::{FitError, FitProblem, Fitted};
+use crate::fit::problem::{FitError, FitProblem, Fitted};
 use crate::forward::ByFormulas;
-use crate::held_out::{HeldOut, NEARER};
-use crate::sensitivity::Point;
+use crate::forward::field::{Field, Grid};
+use crate::forward::sensitivity::Point;
+use crate::misfit::held_out::{HeldOut, NEARER};
 
 /// Forms of the library that are searched for their best numbers, alone and with a second.
 const SEARCHED: usize = 8;

@@ -9,9 +9,9 @@ use super::apart::Apart;
 use super::process::Process;
 use super::response::Response;
 use super::with_field::WithField;
-use crate::field::Field;
+use crate::fit::problem::{FitError, FitProblem, Fitted};
 use crate::fit::{Data, Fit};
-use crate::fit_problem::{FitError, FitProblem, Fitted};
+use crate::forward::field::Field;
 use crate::forward::{Moment, Passages, Request, Scatter};
 
 /// Moments of each condition at which the force is given.

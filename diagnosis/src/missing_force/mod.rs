@@ -30,12 +30,12 @@ use self::formula::Search;
 use self::found::Found;
 use self::term::State;
 use self::with_field::WithField;
-use crate::between::Between;
-use crate::field::Field;
-use crate::fit_problem::{FitError, FitProblem, Fitted};
-use crate::fitted_parameters::parameters;
+use crate::fit::fitted_parameters::parameters;
+use crate::fit::problem::{FitError, FitProblem, Fitted};
+use crate::forward::field::Field;
 use crate::forward::{ByFormulas, Moment, Passages};
-use crate::held_out::HeldOut;
+use crate::misfit::held_out::HeldOut;
+use crate::noise::between::Between;
 use crate::rounding::{six_digits, six_digits_or_null};
 
 /// The file with the force along the paths.

@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
 use super::response::Response;
-use crate::field::{Grid, Scaled};
+use crate::forward::field::{Grid, Scaled};
 use crate::noise::log_determinant;
 
 /// Sizes of the force over that of the model, and lengths over the extent of each axis, that are tried.

@@ -8,13 +8,13 @@ use rayon::prelude::*;
 
 use super::term::State;
 use super::with_field::WithField;
-use crate::field::{Field, Grid};
 use crate::fit::Fit;
-use crate::fit_problem::FitProblem;
+use crate::fit::problem::FitProblem;
+use crate::forward::field::{Field, Grid};
+use crate::forward::sensitivity::Point;
 use crate::forward::{Forward, Moment, PredictError};
+use crate::noise::weights::Weight;
 use crate::projection::Basis;
-use crate::sensitivity::Point;
-use crate::weights::Weight;
 
 /// Nodes over depth and over speed, and the most over angle and over diameter.
 const DEPTHS: usize = 14;

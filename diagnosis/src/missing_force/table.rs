@@ -8,9 +8,9 @@ use nalgebra::{DMatrix, DVector};
 use super::apart::Apart;
 use super::found::{Found, MOMENTS};
 use crate::fit::Fit;
-use crate::fit_problem::{FitProblem, Fitted};
+use crate::fit::problem::{FitProblem, Fitted};
+use crate::forward::observable::Observable;
 use crate::forward::{Moment, NORMAL_95, Passages, PredictError, Request, Scatter, sense};
-use crate::observable::Observable;
 use crate::observed::ObservedCondition;
 
 /// Share of a velocity along the surface from which on a force normal to the motion is given: none acts on a vertical fall.

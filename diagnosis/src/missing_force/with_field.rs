@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::field::Field;
+use crate::forward::field::Field;
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
 
 /// The model of `forward` on whose bodies the force of `field` acts too.

@@ -3,7 +3,7 @@
 use measurements::MeasurementSet;
 
 use crate::forward::Forward;
-use crate::observable::Layout;
+use crate::forward::observable::Layout;
 
 /// Makes models for conditions that were not measured.
 pub trait Designs: Sync {

@@ -5,9 +5,9 @@ use nalgebra::DVector;
 
 use super::designs::Designs;
 use super::hypothesis::Hypothesis;
-use crate::fit_problem::FitProblem;
+use crate::fit::problem::FitProblem;
 use crate::forward::Forward;
-use crate::observable::{Layout, Observable};
+use crate::forward::observable::{Layout, Observable};
 use crate::observed::{BEFORE_STOP, ObservedCondition, PENETRATION_FRAMES};
 
 /// A condition with a model before it, and the errors that it would be measured with.
@@ -115,10 +115,10 @@ impl ObservedCondition {
         let kinds: Vec<Observable> = layout.kinds();
         Self {
             id: condition.id.clone(),
-            reading: crate::reading_error::reading(set, &layout, condition, [&[], &[]]),
+            reading: crate::observed::reading_error::reading(set, &layout, condition, [&[], &[]]),
             stated: kinds
                 .iter()
-                .map(|kind| crate::reading_error::stated(&set.stated, *kind))
+                .map(|kind| crate::observed::reading_error::stated(&set.stated, *kind))
                 .collect(),
             reach: crate::observed::reach(set, &layout, &mean, condition),
             runs: vec![mean.clone(); repeats],

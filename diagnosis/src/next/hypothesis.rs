@@ -2,11 +2,11 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector, SymmetricEigen};
 
+use crate::fit::problem::FitProblem;
 use crate::fit::value_mut;
-use crate::fit_problem::FitProblem;
+use crate::forward::sensitivity::Point;
 use crate::forward::{Form, Forward, PredictError, SEPARATE};
-use crate::sensitivity::Point;
-use crate::weights::Weight;
+use crate::noise::weights::Weight;
 
 /// Share of its standard error by which an unknown is moved for a derivative.
 const STEP: f64 = 0.1;

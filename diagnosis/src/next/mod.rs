@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::fit_problem::{DEFAULT_SEED, FitProblem};
+use crate::fit::problem::{DEFAULT_SEED, FitProblem};
 use crate::forward::SEPARATE;
 use crate::rounding::rounded;
 use crate::verdict::{Diagnosis, Verdict};

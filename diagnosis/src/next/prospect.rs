@@ -9,11 +9,11 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::hypothesis::{Expectation, Hypothesis};
 use crate::forward::Forward;
+use crate::forward::sensitivity::Sensitivity;
+use crate::noise::weights::{Weight, with_stop_error};
 use crate::noise::{Noise, log_determinant};
 use crate::observed::ObservedCondition;
 use crate::random::{Purpose, normal, stream};
-use crate::sensitivity::Sensitivity;
-use crate::weights::{Weight, with_stop_error};
 
 /// Draws of each hypothesis.
 const DRAWS: usize = 100;

@@ -7,7 +7,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use crate::compare::Comparison;
-use crate::observable::Observable;
+use crate::forward::observable::Observable;
 
 /// Size of one panel (pixels).
 const PANEL: (u32, u32) = (420, 330);

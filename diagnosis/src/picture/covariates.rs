@@ -5,9 +5,9 @@ use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, padded, short, svg};
 use plotters::prelude::*;
 
-use crate::covariate::{self, Covariate};
-use crate::force_error::{ForceError, Trend};
 use crate::forward::NORMAL_95;
+use crate::misfit::covariate::{self, Covariate};
+use crate::misfit::force_error::{ForceError, Trend};
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).

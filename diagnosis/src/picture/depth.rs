@@ -5,7 +5,7 @@ use plots::{Area, Drawn, Hover, LETTER, PictureError, fitting, legend, letters, 
 use plotters::prelude::*;
 
 use super::signed::{self, Scale};
-use crate::force_error::ForceCell;
+use crate::misfit::force_error::ForceCell;
 use crate::where_it_fails::{Failing, WhereItFails};
 
 /// Height of the depths of one model (pixels).

@@ -5,8 +5,8 @@ use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, centred, fitting, letters, short, svg};
 use plotters::prelude::*;
 
-use crate::errors::Errors;
-use crate::observable::Observable;
+use crate::forward::observable::Observable;
+use crate::misfit::errors::Errors;
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel, and the least width of all (pixels).

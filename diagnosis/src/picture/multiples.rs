@@ -7,8 +7,8 @@ use plots::{Area, Drawn, GREY, Hover, PictureError, fitting, letters, padded, sh
 use plotters::prelude::*;
 
 use crate::forward::NORMAL_95;
-use crate::observable::Observable;
-use crate::residual::Residual;
+use crate::forward::observable::Observable;
+use crate::misfit::residual::Residual;
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).

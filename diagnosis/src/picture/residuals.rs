@@ -4,7 +4,7 @@ use plots::legend::Sign;
 use plots::{PictureError, colour};
 
 use super::multiples::{self, Panel, Track, tracks};
-use crate::residual::Residual;
+use crate::misfit::residual::Residual;
 use crate::where_it_fails::WhereItFails;
 
 /// Most panels.

@@ -6,8 +6,8 @@ use plots::legend::{self, Sign};
 use plots::{Area, COLOURS, Drawn, Hover, PictureError, centred, fitting, short, svg};
 use plotters::prelude::*;
 
-use crate::error_unit::Unit;
-use crate::errors::Errors;
+use crate::misfit::error_unit::Unit;
+use crate::misfit::errors::Errors;
 use crate::where_it_fails::WhereItFails;
 
 /// Height (pixels), least width, and least width of a step.

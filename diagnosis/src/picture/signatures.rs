@@ -7,8 +7,8 @@ use plotters::prelude::*;
 
 use super::multiples::{self, Panel, Track, tracks};
 use crate::forward::NORMAL_95;
-use crate::observable::Observable;
-use crate::residual::Residual;
+use crate::forward::observable::Observable;
+use crate::misfit::residual::Residual;
 use crate::where_it_fails::{Signature, WhereItFails};
 
 /// Most tracks, and most conditions of scalars.

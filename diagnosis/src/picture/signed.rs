@@ -4,7 +4,7 @@ use plots::legend::{self, Sign};
 use plots::{Area, COLOURS, Drawn, GREY, centred, letters, short};
 use plotters::prelude::*;
 
-use crate::force_error::ForceCell;
+use crate::misfit::force_error::ForceCell;
 
 /// Where a scale may end.
 const LIMITS: [f64; 9] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 1.0, 2.0, 5.0];

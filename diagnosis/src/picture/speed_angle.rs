@@ -6,7 +6,7 @@ use plots::{Area, Drawn, Hover, PictureError, fitting, legend, letters, padded, 
 use plotters::prelude::*;
 
 use super::signed::{self, Scale};
-use crate::force_error::ForceCell;
+use crate::misfit::force_error::ForceCell;
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).

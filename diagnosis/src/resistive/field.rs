@@ -5,7 +5,7 @@ use std::sync::Arc;
 use engine::math::Vec3;
 use resistive::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
-use crate::field::Field;
+use crate::forward::field::Field;
 
 /// A force that pushes, or is normal to the motion, fades with the speed below this share of √(g D), so that it moves nothing
 /// that rests.

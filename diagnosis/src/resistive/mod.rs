@@ -18,12 +18,12 @@ use std::sync::Arc;
 use measurements::{Condition, Kind, MeasurementSet, ParameterPrior};
 use resistive::{Approach, Effect, RESISTANCE_LAWS};
 
-use crate::apparatus::{Apparatus, is_looked_for};
+use crate::forward::apparatus::{Apparatus, is_looked_for};
+use crate::forward::observable::Layout;
 use crate::forward::{
     ByFormulas, Candidate, Forward, Parameter, ParameterKind, PredictError, Prior, Request, Scatter,
 };
 use crate::next::Designs;
-use crate::observable::Layout;
 pub use error::ForwardError;
 use prepared::{Prepared, extent};
 

@@ -3,7 +3,7 @@
 use resistive::{Accelerometer, Impact, State, Trajectory};
 
 use crate::forward::Scatter;
-use crate::observable::{Curve, Observable};
+use crate::forward::observable::{Curve, Observable};
 
 /// Longer than any impact (s): what has not stopped then never does.
 pub(super) const DURATION: f64 = 10.0;

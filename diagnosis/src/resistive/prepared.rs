@@ -23,8 +23,8 @@ use super::field::FieldForce;
 use super::over_time::{self, DURATION};
 use super::pushed;
 use super::scatter::PathScatter;
+use crate::forward::observable::{Layout, Observable};
 use crate::forward::{Bend, Moment, Scatter, sense};
-use crate::observable::{Layout, Observable};
 
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
 const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };

@@ -4,8 +4,8 @@ use measurements::Condition;
 use serde::Serialize;
 
 use super::WhereItFails;
-use crate::covariate;
-use crate::force_error::{ForceCell, ForceErrors, Group, Trend};
+use crate::misfit::covariate;
+use crate::misfit::force_error::{ForceCell, ForceErrors, Group, Trend};
 use crate::rounding::six_digits;
 
 #[derive(Serialize)]

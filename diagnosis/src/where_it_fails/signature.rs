@@ -1,7 +1,7 @@
 //! What the best candidates would do to the predictions.
 
-use crate::fit_problem::{FitProblem, Fitted};
-use crate::residual::{Residual, residuals};
+use crate::fit::problem::{FitProblem, Fitted};
+use crate::misfit::residual::{Residual, residuals};
 use crate::verdict::Diagnosis;
 
 /// How many candidates are drawn.

@@ -4,7 +4,7 @@
 
 use configs::Model;
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::next::{Next, Recommendation, recommend};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;

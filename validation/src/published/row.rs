@@ -2,7 +2,7 @@
 
 use configs::ConfigError;
 use diagnosis::compare::CompareError;
-use diagnosis::fit_problem::FitError;
+use diagnosis::fit::problem::FitError;
 use engine::error::ThreadsError;
 use plots::PictureError;
 use resistive::ImpactError;

@@ -2,8 +2,8 @@
 //! could not.
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use diagnosis::forward::observable::Layout;
 use diagnosis::forward::{Forward, Request, Scatter};
-use diagnosis::observable::Layout;
 use diagnosis::resistive::ResistiveForward;
 use measurements::{Bed, Condition, Frame, Geometry, Instrument, Kind, MeasurementSet, Run};
 

@@ -3,12 +3,12 @@
 use std::f64::consts::FRAC_PI_4;
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
-use diagnosis::added_force::Size;
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::forward::Forward;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
+use diagnosis::verdict::added_force::Size;
 use diagnosis::verdict::{Diagnosis, Status, Verdict};
 use engine::grains::Space;
 use engine::math::Vec3;

@@ -2,7 +2,7 @@
 
 use configs::{LoadOptions, Model, ModelSource};
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::forward::{Forward, Request, Scatter};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;

@@ -2,7 +2,7 @@
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::{ForwardError, ResistiveForward};
 use diagnosis::verdict::{Diagnosis, Verdict};

@@ -1,10 +1,10 @@
 //! Impact angles that are not what a set states, and ways forward that are not zero at contact.
 
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem, Fitted};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem, Fitted};
+use diagnosis::forward::sensitivity::Point;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
-use diagnosis::sensitivity::Point;
 use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::MeasurementSet;
 use validation::benchmark::trial::baseline;

@@ -1,7 +1,7 @@
 //! Several revisions of a model side by side.
 
 use diagnosis::compare::{Comparison, Revision, compare};
-use diagnosis::fit_problem::DEFAULT_SEED;
+use diagnosis::fit::problem::DEFAULT_SEED;
 use diagnosis::observed::Observed;
 use measurements::Kind;
 use serde_json::Value;

@@ -1,8 +1,8 @@
 //! The verdicts.
 
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
-use diagnosis::held_out::LeftOut;
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::misfit::held_out::LeftOut;
 use diagnosis::observed::Observed;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 use measurements::{Kind, MeasurementSet, StatedError};

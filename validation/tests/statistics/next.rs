@@ -1,7 +1,7 @@
 //! The next experiment.
 
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::next::{FollowUp, Next, Recommendation, follow_up, recommend};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;

@@ -1,9 +1,9 @@
 //! What is learned from repeats.
 
-use diagnosis::fit_problem::FitProblem;
+use diagnosis::fit::problem::FitProblem;
+use diagnosis::forward::sensitivity::{Point, Spread};
 use diagnosis::noise::Noise;
 use diagnosis::observed::Observed;
-use diagnosis::sensitivity::{Point, Spread};
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, TRUTH, TwoTerm};

@@ -1,8 +1,8 @@
 //! Where the search of a fit ends: not at zero, and not at a bound, unless the data are there.
 
-use diagnosis::fit_problem::FitProblem;
+use diagnosis::fit::problem::FitProblem;
+use diagnosis::forward::sensitivity::Point;
 use diagnosis::observed::Observed;
-use diagnosis::sensitivity::Point;
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, TwoTerm};

@@ -1,7 +1,7 @@
 //! Sets of several beds: what differs between them is a term of each but the first, and no physics.
 
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};

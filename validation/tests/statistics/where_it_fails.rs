@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use diagnosis::compare::{Comparison, Revision, compare};
 use diagnosis::diagnose::diagnose;
-use diagnosis::fit_problem::{DEFAULT_SEED, FitProblem};
-use diagnosis::force_error::{ForceCell, ForceErrors, Trend};
+use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
+use diagnosis::misfit::force_error::{ForceCell, ForceErrors, Trend};
 use diagnosis::observed::Observed;
 use diagnosis::where_it_fails::{FILES, WhereItFails};
 use measurements::{Kind, MeasurementSet};

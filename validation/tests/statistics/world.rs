@@ -1,10 +1,10 @@
 //! A small world of its own: a sphere in a bed, with effects that can be hidden in it. It shares no
 //! code with the models that ship.
 
+use diagnosis::forward::observable::Layout;
 use diagnosis::forward::{
     Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
 };
-use diagnosis::observable::Layout;
 
 /// Bulk density of the bed (kg/m³).
 const DENSITY: f64 = 1480.0;

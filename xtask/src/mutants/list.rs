@@ -100,7 +100,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 7,
         what: "the lack of fit is two-sided",
-        file: "diagnosis/src/lack_of_fit.rs",
+        file: "diagnosis/src/misfit/lack_of_fit.rs",
         edits: &[(
             "distribution.sf(chi2)",
             "2.0 * distribution.sf(chi2).min(1.0 - distribution.sf(chi2))",
@@ -110,7 +110,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 8,
         what: "conditions that were held out take part in the fit",
-        file: "diagnosis/src/observed.rs",
+        file: "diagnosis/src/observed/mod.rs",
         edits: &[(
             "condition.role == role && !observed",
             "(condition.role == role || role == Role::Fit) && !observed",
@@ -130,7 +130,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 10,
         what: "repeats weigh no more than one run",
-        file: "diagnosis/src/weights.rs",
+        file: "diagnosis/src/noise/weights.rs",
         edits: &[("let runs = condition.runs.len().max(1) as f64;", "let runs = 1.0;")],
         suites: STATISTICS,
     },
@@ -202,7 +202,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 18,
         what: "the resampled lack of fit is too improbable",
-        file: "diagnosis/src/lack_of_fit.rs",
+        file: "diagnosis/src/misfit/lack_of_fit.rs",
         edits: &[("rarest(sizes) <= own + 1", "rarest(sizes) < own")],
         suites: STATISTICS,
     },
@@ -223,7 +223,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 21,
         what: "the error of held-out conditions is halved once an effect is named",
-        file: "diagnosis/src/held_out.rs",
+        file: "diagnosis/src/misfit/held_out.rs",
         edits: &[(
             "error(|(condition, _, after)| (*condition, after)),",
             "error(|(condition, _, after)| (*condition, after)).map(|error| 0.5 * error),",
@@ -250,7 +250,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 24,
         what: "the probability of naming any effect is that of naming the first",
-        file: "diagnosis/src/significance.rs",
+        file: "diagnosis/src/ranking/significance.rs",
         edits: &[(
             "draw.iter().any(|score| score * score >= delta)",
             "draw.iter().take(1).any(|score| score * score >= delta)",
@@ -260,7 +260,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 25,
         what: "probabilities of force errors are one-sided",
-        file: "diagnosis/src/force_error/part.rs",
+        file: "diagnosis/src/misfit/force_error/part.rs",
         edits: &[("{ libm::erfc((value / se)", "{ 0.5 * libm::erfc((value / se)")],
         suites: STATISTICS,
     },
