@@ -1,6 +1,6 @@
 //! A set in a few lines of plain text.
 
-use super::{Bed, Condition, Geometry, Kind, Loaded, MeasurementSet, Role, Run};
+use crate::{Bed, Condition, Geometry, Kind, Loaded, MeasurementSet, Role, Run};
 
 impl Loaded {
     /// [`MeasurementSet::describe`] with the columns that were understood.

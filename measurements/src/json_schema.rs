@@ -4,9 +4,10 @@ use configs::json_schema::{Format, Gathered, asked};
 use configs::reader::{Asked, FileKind, TableReader};
 use serde_json::{Value, json};
 
-use super::columns::{Content, RUNS, TRAJECTORIES};
-use super::priors::PRIORS;
-use super::{Kind, TEMPLATE, document};
+use crate::document;
+use crate::document::priors::PRIORS;
+use crate::table::columns::{Content, RUNS, TRAJECTORIES};
+use crate::{Kind, TEMPLATE};
 
 /// What is read, and by what.
 const READER: (FileKind, &dyn Fn(TableReader<'_>)) =

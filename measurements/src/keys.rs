@@ -20,68 +20,68 @@ const ANY: Range = Range::closed(-f64::MAX, f64::MAX);
 const NUMBER: Dimension = Dimension::NONE;
 const LENGTH: Dimension = Dimension::LENGTH;
 
-pub(super) const SCHEMA: ParamSpec =
+pub(crate) const SCHEMA: ParamSpec =
     key("schema", NUMBER, Range::closed(1.0, 1.0), (1.0, 1.0), "the version of the format");
 
-pub(super) const RATE: ParamSpec =
+pub(crate) const RATE: ParamSpec =
     key("rate_hz", Dimension::RATE, POSITIVE, (1.0, 1e7), "the number of frames per second");
-pub(super) const POSITION_SIGMA: ParamSpec = key(
+pub(crate) const POSITION_SIGMA: ParamSpec = key(
     "position_sigma_m",
     LENGTH,
     NOT_NEGATIVE,
     (0.0, 0.01),
     "the root mean square error of one reading of a position",
 );
-pub(super) const FORCE_SIGMA: ParamSpec = key(
+pub(crate) const FORCE_SIGMA: ParamSpec = key(
     "force_sigma_N",
     Dimension::FORCE,
     NOT_NEGATIVE,
     (0.0, 1e4),
     "the root mean square error of one reading of a force",
 );
-pub(super) const ACCELERATION_SIGMA: ParamSpec = key(
+pub(crate) const ACCELERATION_SIGMA: ParamSpec = key(
     "acceleration_sigma_m_s2",
     Dimension::ACCELERATION,
     NOT_NEGATIVE,
     (0.0, 1e3),
     "the root mean square error of one reading of an acceleration",
 );
-pub(super) const VELOCITY_SIGMA: ParamSpec = key(
+pub(crate) const VELOCITY_SIGMA: ParamSpec = key(
     "velocity_sigma_m_s",
     Dimension::SPEED,
     NOT_NEGATIVE,
     (0.0, 10.0),
     "the root mean square error of one reading of a velocity",
 );
-pub(super) const SPIN_SIGMA: ParamSpec = key(
+pub(crate) const SPIN_SIGMA: ParamSpec = key(
     "spin_sigma_rad_s",
     Dimension::SPIN,
     NOT_NEGATIVE,
     (0.0, 1e3),
     "the root mean square error of one reading of a spin",
 );
-pub(super) const ACCELERATION_RANGE: ParamSpec = key(
+pub(crate) const ACCELERATION_RANGE: ParamSpec = key(
     "acceleration_range_m_s2",
     Dimension::ACCELERATION,
     POSITIVE,
     (1.0, 1e6),
     "the size of accelerations beyond which the accelerometer reads nothing",
 );
-pub(super) const SPEED_SIGMA: ParamSpec = key(
+pub(crate) const SPEED_SIGMA: ParamSpec = key(
     "speed_sigma_rel",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 0.5),
     "the relative error of the set impact speed",
 );
-pub(super) const ANGLE_SIGMA: ParamSpec = key(
+pub(crate) const ANGLE_SIGMA: ParamSpec = key(
     "angle_sigma_deg",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 30.0),
     "the error of the set impact angle, in degrees",
 );
-pub(super) const LEVEL_SIGMA: ParamSpec = key(
+pub(crate) const LEVEL_SIGMA: ParamSpec = key(
     "level_sigma_m",
     LENGTH,
     NOT_NEGATIVE,
@@ -89,63 +89,63 @@ pub(super) const LEVEL_SIGMA: ParamSpec = key(
     "the error of the level of the surface",
 );
 
-pub(super) const TIME_SIGMA: ParamSpec = key(
+pub(crate) const TIME_SIGMA: ParamSpec = key(
     "time_sigma_s",
     Dimension::TIME,
     NOT_NEGATIVE,
     (0.0, 0.1),
     "the error of the zero of the clock, which all runs share",
 );
-pub(super) const ZERO_SIGMA: ParamSpec = key(
+pub(crate) const ZERO_SIGMA: ParamSpec = key(
     "zero_sigma_m",
     LENGTH,
     NOT_NEGATIVE,
     (0.0, 0.05),
     "the error of the zero of depth, which all runs share",
 );
-pub(super) const SURFACE_SIGMA: ParamSpec = key(
+pub(crate) const SURFACE_SIGMA: ParamSpec = key(
     "surface_sigma_m",
     LENGTH,
     NOT_NEGATIVE,
     (0.0, 0.05),
     "the error of the level of the surface, which all runs share, where clocks, depths and speeds are read where free fall comes to that level",
 );
-pub(super) const SPEED_BIAS_SIGMA: ParamSpec = key(
+pub(crate) const SPEED_BIAS_SIGMA: ParamSpec = key(
     "speed_bias_sigma_rel",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 0.5),
     "the relative error that all impact speeds share",
 );
-pub(super) const ANGLE_BIAS_SIGMA: ParamSpec = key(
+pub(crate) const ANGLE_BIAS_SIGMA: ParamSpec = key(
     "angle_bias_sigma_deg",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 30.0),
     "the error that all angles of oblique impacts share, in degrees",
 );
-pub(super) const SCALE_SIGMA: ParamSpec = key(
+pub(crate) const SCALE_SIGMA: ParamSpec = key(
     "scale_sigma_rel",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 0.5),
     "the relative error of the scale of lengths",
 );
-pub(super) const MASS_SIGMA: ParamSpec = key(
+pub(crate) const MASS_SIGMA: ParamSpec = key(
     "mass_sigma_rel",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 0.5),
     "the relative error of the mass of each body",
 );
-pub(super) const TILT_SIGMA: ParamSpec = key(
+pub(crate) const TILT_SIGMA: ParamSpec = key(
     "tilt_sigma_deg",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 30.0),
     "how well the apparatus is plumb, in degrees",
 );
-pub(super) const SESSION_SIGMA: ParamSpec = key(
+pub(crate) const SESSION_SIGMA: ParamSpec = key(
     "session_sigma_rel",
     NUMBER,
     NOT_NEGATIVE,
@@ -154,11 +154,11 @@ pub(super) const SESSION_SIGMA: ParamSpec = key(
 );
 
 /// A planar bed has a density per area; its unit is told by the geometry.
-pub(super) const BULK_DENSITY: ParamSpec =
+pub(crate) const BULK_DENSITY: ParamSpec =
     key("bulk_density", Dimension::DENSITY, POSITIVE, (0.1, 2e4), "the bulk density of the bed");
-pub(super) const AREA_DENSITY: ParamSpec =
+pub(crate) const AREA_DENSITY: ParamSpec =
     ParamSpec { dimension: Dimension::AREA_DENSITY, ..BULK_DENSITY };
-pub(super) const GRAVITY: ParamSpec = key(
+pub(crate) const GRAVITY: ParamSpec = key(
     "gravity",
     Dimension::ACCELERATION,
     NOT_NEGATIVE,
@@ -166,58 +166,58 @@ pub(super) const GRAVITY: ParamSpec = key(
     "the acceleration by gravity",
 )
 .or(9.81);
-pub(super) const GRAIN_DIAMETER: ParamSpec =
+pub(crate) const GRAIN_DIAMETER: ParamSpec =
     key("grain_diameter", LENGTH, POSITIVE, (1e-6, 0.1), "the mean diameter of the grains");
 
-pub(super) const PACKING_FRACTION: ParamSpec = PACKING.named(
+pub(crate) const PACKING_FRACTION: ParamSpec = PACKING.named(
     "packing_fraction",
     "the area (volume) of the grains over the base times the mean height of the surface",
 );
-pub(super) const PACKING_FRACTION_SIGMA: ParamSpec = key(
+pub(crate) const PACKING_FRACTION_SIGMA: ParamSpec = key(
     "packing_fraction_sigma",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 0.1),
     "the standard error of the packing fraction",
 );
-pub(super) const SURFACE_HEIGHT: ParamSpec = key(
+pub(crate) const SURFACE_HEIGHT: ParamSpec = key(
     "surface_height",
     LENGTH,
     POSITIVE,
     (1e-3, 100.0),
     "the mean height of the surface above the floor",
 );
-pub(super) const SURFACE_HEIGHT_SIGMA: ParamSpec = key(
+pub(crate) const SURFACE_HEIGHT_SIGMA: ParamSpec = key(
     "surface_height_sigma",
     LENGTH,
     NOT_NEGATIVE,
     (0.0, 1.0),
     "the standard error of the height of the surface",
 );
-pub(super) const BULK_DENSITY_SIGMA: ParamSpec = key(
+pub(crate) const BULK_DENSITY_SIGMA: ParamSpec = key(
     "bulk_density_sigma",
     Dimension::DENSITY,
     NOT_NEGATIVE,
     (0.0, 1e3),
     "the standard error of the bulk density",
 );
-pub(super) const AREA_DENSITY_SIGMA: ParamSpec =
+pub(crate) const AREA_DENSITY_SIGMA: ParamSpec =
     ParamSpec { dimension: Dimension::AREA_DENSITY, ..BULK_DENSITY_SIGMA };
-pub(super) const GRAIN_DIAMETER_SIGMA: ParamSpec = key(
+pub(crate) const GRAIN_DIAMETER_SIGMA: ParamSpec = key(
     "grain_diameter_sigma",
     LENGTH,
     NOT_NEGATIVE,
     (0.0, 0.01),
     "the standard error of the mean diameter of the grains",
 );
-pub(super) const COORDINATION: ParamSpec = key(
+pub(crate) const COORDINATION: ParamSpec = key(
     "coordination",
     NUMBER,
     NOT_NEGATIVE,
     (0.0, 20.0),
     "the mean number of contacts of a grain, which simulated beds show",
 );
-pub(super) const COORDINATION_SIGMA: ParamSpec = key(
+pub(crate) const COORDINATION_SIGMA: ParamSpec = key(
     "coordination_sigma",
     NUMBER,
     NOT_NEGATIVE,
@@ -225,57 +225,57 @@ pub(super) const COORDINATION_SIGMA: ParamSpec = key(
     "the standard error of the coordination number",
 );
 
-pub(super) const STOP_TIME_ERROR: ParamSpec =
+pub(crate) const STOP_TIME_ERROR: ParamSpec =
     key("stop_time_rel", NUMBER, NOT_NEGATIVE, (0.0, 1.0), "the relative error of a stopping time");
-pub(super) const FINAL_Z_ERROR: ParamSpec =
+pub(crate) const FINAL_Z_ERROR: ParamSpec =
     key("final_z_rel", NUMBER, NOT_NEGATIVE, (0.0, 1.0), "the relative error of a final depth");
-pub(super) const FINAL_X_ERROR: ParamSpec =
+pub(crate) const FINAL_X_ERROR: ParamSpec =
     key("final_x_rel", NUMBER, NOT_NEGATIVE, (0.0, 1.0), "the relative error of a final range");
 
-pub(super) const SPEED: ParamSpec =
+pub(crate) const SPEED: ParamSpec =
     key("speed", Dimension::SPEED, NOT_NEGATIVE, (0.0, 500.0), "the speed at first contact");
-pub(super) const ANGLE: ParamSpec = key(
+pub(crate) const ANGLE: ParamSpec = key(
     "angle_deg",
     NUMBER,
     Range { min: 0.0, max: 90.0, includes_min: false },
     (0.0, 90.0),
     "the angle of the velocity below the horizontal in degrees; 90 is straight down",
 );
-pub(super) const DIAMETER: ParamSpec =
+pub(crate) const DIAMETER: ParamSpec =
     key("diameter", LENGTH, POSITIVE, (1e-4, 10.0), "the diameter of the intruder");
-pub(super) const MASS: ParamSpec =
+pub(crate) const MASS: ParamSpec =
     key("mass", Dimension::MASS, POSITIVE, (1e-7, 1e5), "the mass of the intruder");
-pub(super) const SPIN: ParamSpec =
+pub(crate) const SPIN: ParamSpec =
     key("spin", Dimension::SPIN, ANY, (-1e4, 1e4), "the spin, positive when it rolls forward")
         .or(0.0);
-pub(super) const PACKING: ParamSpec = key(
+pub(crate) const PACKING: ParamSpec = key(
     "packing",
     NUMBER,
     Range { min: 0.0, max: 1.0, includes_min: false },
     (0.1, 0.95),
     "the packing fraction of the bed",
 );
-pub(super) const BED_DEPTH: ParamSpec =
+pub(crate) const BED_DEPTH: ParamSpec =
     key("bed_depth", LENGTH, POSITIVE, (1e-3, 100.0), "the depth of the bed");
-pub(super) const LENGTH_OF_LINK: ParamSpec =
+pub(crate) const LENGTH_OF_LINK: ParamSpec =
     key("length", LENGTH, POSITIVE, (1e-3, 10.0), "the length of a link");
-pub(super) const HEIGHT: ParamSpec =
+pub(crate) const HEIGHT: ParamSpec =
     key("height", LENGTH, POSITIVE, (1e-4, 10.0), "the height of a cylinder or cone");
-pub(super) const SHAFT_DIAMETER: ParamSpec = key(
+pub(crate) const SHAFT_DIAMETER: ParamSpec = key(
     "shaft_diameter",
     LENGTH,
     POSITIVE,
     (1e-4, 10.0),
     "the diameter of a shaft behind a cylinder, hemisphere or cone, which follows it into the bed",
 );
-pub(super) const APEX: ParamSpec = key(
+pub(crate) const APEX: ParamSpec = key(
     "apex_deg",
     NUMBER,
     Range { min: 0.0, max: 180.0, includes_min: false },
     (1.0, 180.0),
     "the full apex angle of a cone in degrees",
 );
-pub(super) const LINK_ANGLE: ParamSpec = key(
+pub(crate) const LINK_ANGLE: ParamSpec = key(
     "link_angle_deg",
     NUMBER,
     Range::closed(-90.0, 90.0),
@@ -283,14 +283,14 @@ pub(super) const LINK_ANGLE: ParamSpec = key(
     "the angle of a link's axis to the vertical in degrees",
 );
 
-pub(super) const COST_OF_RUN: ParamSpec =
+pub(crate) const COST_OF_RUN: ParamSpec =
     key("run", NUMBER, POSITIVE, (1e-3, 1e4), "the cost of one run").or(1.0);
-pub(super) const COST_OF_CONDITION: ParamSpec =
+pub(crate) const COST_OF_CONDITION: ParamSpec =
     key("condition", NUMBER, NOT_NEGATIVE, (0.0, 1e4), "the cost of a further condition").or(0.0);
-pub(super) const COST_OF_BODY: ParamSpec =
+pub(crate) const COST_OF_BODY: ParamSpec =
     key("body", NUMBER, NOT_NEGATIVE, (0.0, 1e4), "the cost of a body that the set has not")
         .or(0.0);
-pub(super) const COST_OF_BED: ParamSpec = key(
+pub(crate) const COST_OF_BED: ParamSpec = key(
     "bed",
     NUMBER,
     NOT_NEGATIVE,
@@ -300,6 +300,6 @@ pub(super) const COST_OF_BED: ParamSpec = key(
 .or(0.0);
 
 /// +1 or -1: whether a column counts the other way.
-pub(super) const SIGN: ParamSpec =
+pub(crate) const SIGN: ParamSpec =
     key("sign", NUMBER, Range::closed(-1.0, 1.0), (-1.0, 1.0), "1, or -1 to turn a column round")
         .or(1.0);

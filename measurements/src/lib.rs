@@ -1,105 +1,56 @@
 //! Measurement sets: conditions, runs and instrument of one campaign, as `measurement.toml` with its
 //! tables says them.
 //!
-//! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
-//! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
-//! `cells` and `table` read a table, `runs`, `trajectories` and `curve_table` know the tables there are, `several` finds
-//! more than one of the latter two; `curves` lists what is read along one axis and is no position, each kind a `curve` in a file of its own; `fall` and `departure` see fall and contact on any scale, `level` finds one surface for several runs, `speeds` reads speeds that are
-//! not stated; `checks`, `ranges`, `signs`,
-//! `magnitudes`, `pushes`, `accelerometers` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
-//! it states against its frames, and `contradictions` says where they do not agree. `shipped` lists the sets that come with
-//! the program, and `json_schema` describes `measurement.toml` to editors.
+//! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one.
+//!
+//! - `document` is `measurement.toml`: conditions, bodies, beds, what is known beforehand;
+//! - `table` reads a table of any dialect, row by row;
+//! - `curves` lists what is read along one axis and is no position, each kind in a file of its own;
+//! - `load` puts document and tables together;
+//! - `contact` sees fall, contact and rest in the frames of a run, on any scale, and strays among them;
+//! - `checks` holds what the set states against its frames;
+//! - `shipped` lists the sets that come with the program, `json_schema` describes `measurement.toml` to editors.
 
-mod acceleration;
-mod accelerometers;
-mod agreement;
-mod angular_velocity;
-mod beds;
-mod bodies;
-mod braking;
-mod cells;
 mod checks;
-mod columns;
-mod conditions;
-mod confounded;
 mod contact;
-mod contradicted;
 mod contradiction;
-mod contradictions;
-mod curve;
-mod curve_table;
 mod curves;
-mod definitions;
-mod departure;
 mod describe;
-mod dialect;
 mod document;
-mod fall;
-mod feasible;
-mod findings;
-mod fits;
-mod force_depth;
-mod header;
 pub mod json_schema;
 mod keys;
-mod level;
-mod lines;
 mod load;
-mod magnitudes;
 mod median;
-mod optional;
-mod order;
-mod over_time;
-mod priors;
-mod pushes;
-mod ranges;
 mod reading;
-mod row;
-mod runs;
-mod several;
 mod shipped;
-mod signs;
-mod sizes;
-mod smooth;
-mod speeds;
-mod start;
-mod stops;
-mod stray_scalars;
-mod strays;
-mod surface;
 mod table;
-mod template;
-mod trajectories;
-mod unstated;
-mod velocity;
 mod write;
-mod zeros;
 
 use engine::fluid::Fluid;
 
-pub use agreement::Agreement;
-pub use bodies::{POSSIBLE_DENSITY, USUAL_DENSITY};
-pub use braking::Tip;
+pub use checks::agreement::Agreement;
 pub use contact::Contact;
+pub use contact::braking::Tip;
+pub use contact::definitions::{Held, Miss, Outcome, Scalar, hold};
+pub use contact::departure::Departure;
+pub use contact::fall::{Fall, reading_noise};
+pub use contact::level::{Levels, levels, misfit_of_one_level};
+pub use contact::strays::{Cleaned, stray_frames, without_strays};
+pub use contact::zeros::{Offset, RunContact, Severity, SpeedRatio, Zero, Zeros};
 pub use contradiction::{Contradiction, ContradictionKind};
-pub use curve::{Along, Axis, Curve};
+pub use curves::curve::{Along, Axis, Curve};
 pub use curves::curves;
-pub use definitions::{Held, Miss, Outcome, Scalar, hold};
-pub use departure::Departure;
-pub use fall::{Fall, reading_noise};
-pub use feasible::{Cost, Feasible};
-pub use level::{Levels, levels, misfit_of_one_level};
+pub use document::bodies::{POSSIBLE_DENSITY, USUAL_DENSITY};
+pub use document::feasible::{Cost, Feasible};
+pub use document::priors::ParameterPrior;
+pub use document::sizes::SizeError;
+pub use document::template::TEMPLATE;
+pub use load::trajectories::MOST_READINGS;
 pub use load::{Loaded, SetError};
 pub use median::{deviation_of, median};
-pub use priors::ParameterPrior;
 pub use reading::Reading;
 pub use shipped::{SHIPPED_SETS, ShippedSet, find as find_shipped_set};
-pub use sizes::SizeError;
-pub use strays::{Cleaned, stray_frames, without_strays};
-pub use template::TEMPLATE;
-pub use trajectories::MOST_READINGS;
 pub use write::WriteError;
-pub use zeros::{Offset, RunContact, Severity, SpeedRatio, Zero, Zeros};
 
 /// Measurements of impacts under one or more conditions.
 #[derive(Clone, Debug, PartialEq)]
@@ -182,8 +133,10 @@ impl MeasurementSet {
     #[must_use]
     pub fn fall_of(&self, condition: &Condition) -> f64 {
         let bed = self.bed_of(condition);
-        let in_fluid =
-            bed.stated.fluid.and_then(|fluid| bodies::fall(condition, bed.gravity, &fluid));
+        let in_fluid = bed
+            .stated
+            .fluid
+            .and_then(|fluid| document::bodies::fall(condition, bed.gravity, &fluid));
         in_fluid.unwrap_or(bed.gravity)
     }
 

@@ -1,6 +1,6 @@
 //! The median of several numbers, and the run that has it.
 
-use super::{MeasurementSet, Run};
+use crate::{MeasurementSet, Run};
 
 /// The median of `numbers`, the upper of the two middle ones if their count is even; `None` if there are none. Numbers that are
 /// not finite are ordered by [`f64::total_cmp`].
@@ -13,7 +13,7 @@ pub fn median(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
 
 /// The median of the numbers that `of` gives for the runs of `set`, and the index of the run that has it. One wrong run does not
 /// change it much.
-pub(super) fn of_runs(
+pub(crate) fn of_runs(
     set: &MeasurementSet,
     of: impl Fn(&Run) -> Option<f64>,
 ) -> Option<(f64, usize)> {

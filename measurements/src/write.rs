@@ -9,8 +9,8 @@ use configs::toml_string as quoted;
 use engine::checkpoint::write_whole;
 use thiserror::Error;
 
-use super::curve::Curve;
-use super::{
+use crate::curves::curve::Curve;
+use crate::{
     Bed, Condition, Crater, Feasible, Geometry, Kind, MeasurementSet, ParameterPrior, Run,
 };
 
