@@ -75,9 +75,6 @@ impl Common {
     }
 
     /// The same of a model of which `n` run at a time.
-    ///
-    /// # Errors
-    /// Likewise.
     pub(crate) fn refuse_too_large_beside(
         &self,
         model: &Model,

@@ -36,7 +36,6 @@ thread_local! {
 impl Host {
     /// One that has `models` besides those in files: names as arguments give them, and their TOML. Files that these
     /// name lie in the working folder.
-    #[must_use]
     pub fn new(models: Vec<(String, String)>) -> Self {
         Self { models, ..Self::default() }
     }
@@ -47,19 +46,16 @@ impl Host {
     }
 
     /// Whether it has been asked to.
-    #[must_use]
     pub(crate) fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
     }
 
     /// How far the command is, as far as it has said.
-    #[must_use]
     pub fn progress(&self) -> Option<Progress> {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Warnings and notes of the command, one or more lines each, since they were taken last.
-    #[must_use]
     pub fn take_told(&self) -> String {
         std::mem::take(&mut *self.told.lock().unwrap_or_else(PoisonError::into_inner))
     }

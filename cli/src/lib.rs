@@ -140,7 +140,6 @@ enum Command {
 }
 
 /// The program: the command that its arguments name, stopped by signals.
-#[must_use]
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,

@@ -335,9 +335,6 @@ impl Candidate {
 
     /// The same with the errors shared by runs that the set states, and no others: `compare` reports the whole error of a
     /// model, but what the user knows of the apparatus.
-    ///
-    /// # Errors
-    /// Likewise.
     pub(crate) fn forward_before_stated_apparatus(
         &self,
         measured: &Measured,

@@ -57,7 +57,6 @@ impl Damping for Restitution {
 }
 
 /// The parameter that holds the restitution of contacts of grains with `partner`.
-#[must_use]
 pub const fn restitution_key(partner: Partner) -> &'static str {
     match partner {
         Partner::Grain => "restitution",

@@ -38,7 +38,6 @@ pub static LAWS: &[&LawEntry] = &[
 ];
 
 /// The law or effect called `name`.
-#[must_use]
 pub fn find(name: &str) -> Option<&'static LawEntry> {
     LAWS.iter().find(|entry| entry.name == name).copied()
 }

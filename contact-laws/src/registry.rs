@@ -46,7 +46,6 @@ pub struct LawEntry {
 impl LawEntry {
     /// The parts of an entry that follow from the law itself; the texts and parameters, and the candidacy
     /// of an effect, are to be filled in.
-    #[must_use]
     pub const fn of<L: FromParams>() -> Self {
         Self {
             name: L::NAME,

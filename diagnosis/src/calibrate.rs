@@ -281,7 +281,6 @@ impl Simulated {
 
 impl Calibration {
     /// Sets by their truth: nothing and unlisted first.
-    #[must_use]
     pub fn rows(&self) -> Vec<Row> {
         let mut truths: Vec<&str> = vec!["nothing", "unlisted"];
         for set in &self.sets {
@@ -311,7 +310,6 @@ impl Calibration {
 
     /// What is true of `diagnosis`, where nothing, a listed effect and an unlisted one are equally likely beforehand:
     /// the shares among the simulated sets that had the same verdict. None where none had it.
-    #[must_use]
     pub fn probability(&self, diagnosis: &Diagnosis) -> Probability {
         let of_kind = |is: &dyn Fn(&Simulated) -> bool| {
             self.sets.iter().filter(|set| is(set)).count().max(1) as f64

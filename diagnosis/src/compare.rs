@@ -54,7 +54,6 @@ pub struct Comparison {
 
 impl Comparison {
     /// How every revision fails, where this is of `set` and its `observed`.
-    #[must_use]
     pub fn where_it_fails<'a>(
         &self,
         set: &'a MeasurementSet,

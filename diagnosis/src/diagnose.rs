@@ -24,9 +24,6 @@ pub use crate::verdict::judge::ALPHA;
 const ROUNDS: usize = 2;
 
 /// Diagnoses the model on `problem`; equal `seed` and measurements give equal bytes.
-///
-/// # Errors
-/// If the model fails.
 pub fn diagnose(problem: &FitProblem<'_>, seed: u64) -> Result<Diagnosis, FitError> {
     let mut diagnosis = verdict(problem, seed)?;
     // Of a bed it is sought once, when impacts have confirmed the verdict.
@@ -145,9 +142,6 @@ fn lead(
 }
 
 /// Seeks the force that the model lacks where the verdict of `diagnosis` did not ask for it.
-///
-/// # Errors
-/// If the model fails.
 pub fn seek_missing_force(
     problem: &FitProblem<'_>,
     diagnosis: &mut Diagnosis,

@@ -4,7 +4,6 @@ use serde::{Serialize, Serializer};
 use serde_json::Value;
 
 /// To six digits, which is more than any statistic is worth; what is not finite is null.
-#[must_use]
 pub(crate) fn rounded(value: f64) -> Value {
     Some(plots::rounded(value, 6))
         .filter(|value| value.is_finite())

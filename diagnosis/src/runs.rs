@@ -91,31 +91,16 @@ pub struct LargestAt {
 
 /// Why two runs cannot be compared.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum RunsError {
-    /// Runs of different intruders.
     #[error("the first run has {} and the second {}", bodies(counts[0]), bodies(counts[1]))]
-    Bodies {
-        /// Number of bodies of each.
-        counts: [usize; 2],
-    },
-    /// Too little to draw a line through.
+    Bodies { counts: [usize; 2] },
     #[error("the {} run has fewer than two samples of a body", ORDINALS[*run])]
-    TooShort {
-        /// Which run: 0 or 1.
-        run: usize,
-    },
-    /// Samples out of order, or that are no numbers.
+    TooShort { run: usize },
     #[error("the samples of the {} run are not in the order of time", ORDINALS[*run])]
-    Disorder {
-        /// Which run: 0 or 1.
-        run: usize,
-    },
-    /// One run ends before the other starts.
+    Disorder { run: usize },
     #[error("the runs have no time in common: {} s to {} s, and {} s to {} s", spans[0][0], spans[0][1], spans[1][0], spans[1][1])]
-    NoCommonTime {
-        /// Start and end of each (s).
-        spans: [[f64; 2]; 2],
-    },
+    NoCommonTime { spans: [[f64; 2]; 2] },
 }
 
 const ORDINALS: [&str; 2] = ["first", "second"];

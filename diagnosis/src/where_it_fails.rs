@@ -52,9 +52,6 @@ pub struct WhereItFails<'a> {
 impl Failing {
     /// Of `fitted`, called `model`, with the held-out conditions `holdout`, which it can predict; orders of runs are drawn
     /// with `seed`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub fn of(
         problem: &FitProblem<'_>,
         (model, fitted): (&str, &Fitted),
@@ -75,9 +72,6 @@ impl Failing {
 impl<'a> WhereItFails<'a> {
     /// Of the model called `name` as it is and with what `diagnosis` names, and what the two best
     /// candidates would do; orders of runs are drawn with `seed`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub fn of_diagnosis(
         problem: &FitProblem<'a>,
         name: &str,

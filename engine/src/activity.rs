@@ -39,25 +39,21 @@ impl Activity {
     }
 
     /// γ, the largest share of the grains that moved at one time (–).
-    #[must_use]
     pub fn largest_share(&self) -> f64 {
         self.largest_share
     }
 
     /// The greatest kinetic energy of the grains (J).
-    #[must_use]
     pub fn largest_energy(&self) -> f64 {
         self.largest_energy
     }
 
     /// When the grains had it (s).
-    #[must_use]
     pub fn peak_time(&self) -> f64 {
         self.peak_time
     }
 
     /// T, since when the bed has been calm (s); none while it is not.
-    #[must_use]
     pub fn dissipation_time(&self) -> Option<f64> {
         self.calm_since
     }

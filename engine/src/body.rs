@@ -30,7 +30,6 @@ pub struct Followed {
 
 impl Followed {
     /// A body as a whole.
-    #[must_use]
     pub fn of(body: &RigidBody) -> Self {
         // A rotation of many steps has lost its norm by some 1e-13, which is not a depth.
         let down = body.orientation.inverse_transform_vector(&-Vec3::z()).normalize();
@@ -128,7 +127,6 @@ pub struct RigidBody {
 
 impl RigidBody {
     /// A body at rest at the origin; `mass` (kg), `inertia` (kg m²) about its principal axes.
-    #[must_use]
     pub fn new(name: &str, surface: Arc<dyn Surface>, mass: f64, inertia: Vec3) -> Self {
         let part = Part { surface, placement: Placement::fixed(), partner: Partner::Intruder };
         let mut body = Self {
@@ -160,13 +158,11 @@ impl RigidBody {
     }
 
     /// Spin (rad/s).
-    #[must_use]
     pub fn spin(&self) -> Vec3 {
         spin_of(self.orientation, self.inertia, self.angular_momentum)
     }
 
     /// Kinetic energy of translation, that of the fluid that moves with it included, and of rotation (J).
-    #[must_use]
     pub fn kinetic_energy(&self) -> [f64; 2] {
         [
             0.5 * self.moving_mass() * self.velocity.norm_squared(),
@@ -175,19 +171,16 @@ impl RigidBody {
     }
 
     /// Height of its lowest point (m).
-    #[must_use]
     pub fn lowest(&self) -> f64 {
         self.position.z - self.reach_down()
     }
 
     /// How far its lowest point lies below its centre of mass (m).
-    #[must_use]
     pub(crate) fn reach_down(&self) -> f64 {
         self.part[0].surface.support(self.orientation.inverse_transform_vector(&-Vec3::z()))
     }
 
     /// Its surface, in the body frame.
-    #[must_use]
     pub fn surface(&self) -> &dyn Surface {
         &*self.part[0].surface
     }

@@ -21,39 +21,16 @@ const HEADER: usize = 8 + 4 + 32 + 32;
 
 /// What was to be written or read.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum CheckpointError {
-    /// The system refused.
     #[error("cannot {action} {path}: {source}")]
-    Io {
-        /// What was being done.
-        action: &'static str,
-        /// To which file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
-    /// Not one of our files, or cut short or changed.
+    Io { action: &'static str, path: PathBuf, source: io::Error },
     #[error("{path} is damaged: {what}")]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// How that shows.
-        what: &'static str,
-    },
-    /// A file of another version of plunge.
+    Damaged { path: PathBuf, what: &'static str },
     #[error("{path} has format {found}, this version reads format {FORMAT}")]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// Its format number.
-        found: u32,
-    },
-    /// A file of another run.
+    Format { path: PathBuf, found: u32 },
     #[error("{path} belongs to other inputs")]
-    OtherInputs {
-        /// The file.
-        path: PathBuf,
-    },
+    OtherInputs { path: PathBuf },
 }
 
 /// Writes `state`, which belongs to inputs with hash `key`, to `path`; the file that was there
@@ -136,7 +113,6 @@ pub fn load_latest<T: DeserializeOwned>(
 
 impl CheckpointError {
     /// Whether there is no such file.
-    #[must_use]
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::NotFound)
     }
@@ -157,7 +133,6 @@ pub fn write_whole(path: &Path, content: &[u8]) -> io::Result<()> {
 }
 
 /// `path` with `suffix` behind its name.
-#[must_use]
 pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(suffix);
@@ -165,9 +140,6 @@ pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
 }
 
 /// Forces the names in the folder of `path` to disk.
-///
-/// # Errors
-/// If the system refuses.
 pub(crate) fn sync_folder_of(path: &Path) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     File::open(folder.unwrap_or(Path::new(".")))?.sync_all()

@@ -13,13 +13,11 @@ pub struct Clock {
 
 impl Clock {
     /// At the start.
-    #[must_use]
     pub fn new(dt: f64) -> Self {
         Self { step: 0, dt }
     }
 
     /// Time since the start (s).
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.step as f64 * self.dt
     }
@@ -32,7 +30,6 @@ impl Clock {
 
 /// How many steps of `dt` (s) it takes to cover `duration` (s). A quotient that is a whole number but
 /// for round-off is that number.
-#[must_use]
 pub fn steps_in(duration: f64, dt: f64) -> u64 {
     let steps = duration / dt;
     let whole = steps.round();

@@ -58,7 +58,6 @@ struct Gathered {
 ///
 /// # Panics
 /// If spacing or kernel width is not above zero.
-#[must_use]
 pub fn fields(grains: &Grains, plane: &Plane) -> Vec<FieldPoint> {
     let Plane { spacing, kernel_width: c, .. } = *plane;
     assert!(spacing > 0.0 && c > 0.0, "a grid has a spacing and a kernel a width");

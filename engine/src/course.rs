@@ -78,31 +78,26 @@ impl Course {
     }
 
     /// Stopping times, which count from the start, and the depth.
-    #[must_use]
     pub fn stopping(&self) -> &Stopping {
         &self.stopping
     }
 
     /// When it first touched the bed (s); of an intruder of one body, the start.
-    #[must_use]
     pub fn contact(&self) -> Option<f64> {
         self.contact
     }
 
     /// Whether it has touched, has stopped, and keeps still.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.contact.is_some() && self.stopping.is_over()
     }
 
     /// Energy that it has given to the bed by the force on it (J).
-    #[must_use]
     pub fn given(&self) -> f64 {
         self.given
     }
 
     /// Kinetic and potential energy that it has lost since the start, as `body` is now (J).
-    #[must_use]
     pub fn lost(&self, body: &RigidBody) -> [f64; 2] {
         let [kinetic, potential] = energy(body);
         [self.energy[0] - kinetic, self.energy[1] - potential]

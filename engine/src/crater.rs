@@ -23,7 +23,6 @@ pub struct CraterPoint {
 /// The mean surface of `grains` around the vertical axis through `x`, `y` (m), in rings as wide as a mean
 /// diameter; `lies` says of each grain whether it belongs to the bed. Rings that reach beyond the bed's
 /// own extent are left out.
-#[must_use]
 pub fn crater(grains: &Grains, lies: &[bool], (x, y): (f64, f64)) -> Vec<CraterPoint> {
     let mean_diameter = grains.mean_diameter();
     let columns = Columns::of(grains, lies, mean_diameter / COLUMNS_PER_DIAMETER);
@@ -68,7 +67,6 @@ pub struct CraterSize {
 
 /// Depth and width of the crater with this `profile`, in a bed whose undisturbed surface is at the height `surface` (m);
 /// `None` of a profile without a rim on every side of its lowest point.
-#[must_use]
 pub fn crater_size(profile: &[CraterPoint], surface: f64, space: Space) -> Option<CraterSize> {
     let height = |at: &CraterPoint| at.position.z;
     let lowest = profile.iter().min_by(|a, b| height(a).total_cmp(&height(b)))?;

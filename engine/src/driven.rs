@@ -20,7 +20,6 @@ pub struct Driven {
 
 impl Driven {
     /// `body` with the velocity that it has; a spin is taken from it.
-    #[must_use]
     pub fn new(mut body: RigidBody) -> Self {
         body.angular_momentum = Vec3::zeros();
         body.hold_on();

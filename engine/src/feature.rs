@@ -43,20 +43,17 @@ enum Kind {
 
 impl Feature {
     /// A ball of `radius` (m) about the origin.
-    #[must_use]
     pub const fn ball(radius: f64) -> Self {
         Self { height: 0.0, radius, kind: Kind::Ball, curvature: 1.0 / radius }
     }
 
     /// The lower or upper half of a ball about `height` (m) of the axis, its edge included.
-    #[must_use]
     pub const fn dome(height: f64, radius: f64, is_upper: bool) -> Self {
         Self { height, radius, kind: Kind::Dome { is_upper }, curvature: 1.0 / radius }
     }
 
     /// A sharp rim of `radius` (m) at `height` (m): three points of it, in a plane both. Of one that ends a
     /// dome the foremost point is the dome's. It counts as curved like a ball of `edge_radius` (m).
-    #[must_use]
     pub const fn rim(
         (height, radius): (f64, f64),
         is_planar: bool,
@@ -69,20 +66,17 @@ impl Feature {
     }
 
     /// A tip at `height` (m) of the axis, which counts as curved like a ball of `edge_radius` (m).
-    #[must_use]
     pub const fn tip(height: f64, edge_radius: f64) -> Self {
         let kind = Kind::Rim { n: 1, after_foremost: false };
         Self { height, radius: 0.0, kind, curvature: 1.0 / edge_radius }
     }
 
     /// Curvature (1/m) of a ball that would be as stiff at a wall.
-    #[must_use]
     pub fn curvature(&self) -> f64 {
         self.curvature
     }
 
     /// In how many points it meets a wall.
-    #[must_use]
     pub fn n_points(&self) -> usize {
         match self.kind {
             Kind::Ball | Kind::Dome { .. } => 1,
@@ -91,13 +85,11 @@ impl Feature {
     }
 
     /// The middle of it (m, body frame).
-    #[must_use]
     pub(crate) fn middle(&self) -> Vec3 {
         Vec3::z() * self.height
     }
 
     /// Its foremost point (m, body frame) in the direction of the unit vector `towards`.
-    #[must_use]
     pub(crate) fn foremost(&self, towards: Vec3) -> Vec3 {
         match self.kind {
             Kind::Ball => self.middle() + towards * self.radius,
@@ -110,7 +102,6 @@ impl Feature {
 
     /// The points (m, body frame) in which it meets a wall that lies `towards` (unit vector) it, the
     /// foremost first.
-    #[must_use]
     pub fn points(&self, towards: Vec3) -> ArrayVec<Vec3, MOST_POINTS> {
         let Kind::Rim { n, after_foremost } = self.kind else {
             return ArrayVec::from_iter([self.foremost(towards)]);

@@ -18,7 +18,6 @@ impl Fluid {
     /// 30 % above it at 1000 and 15 % at 10 000.
     ///
     /// Source: Dallavalle, Micromeritics (1948).
-    #[must_use]
     pub fn resistance(&self, diameter: f64, area: f64, speed: f64) -> f64 {
         let viscous = 4.8 * (self.viscosity / (self.density * diameter)).sqrt();
         let root = 0.63 * speed.abs().sqrt() + viscous;
@@ -27,7 +26,6 @@ impl Fluid {
 
     /// Mass of the fluid that moves with a body of `diameter` (m) and `volume` (m³) along its axis (kg): that of the
     /// spheroid of the same diameter and volume. A sphere has half of the mass that it displaces, a thin disc 8/3 ρ R³.
-    #[must_use]
     pub fn added_mass(&self, diameter: f64, volume: f64) -> f64 {
         let sphere = std::f64::consts::PI / 6.0 * diameter * diameter * diameter;
         self.density * volume * added_mass_of_spheroid(volume / sphere)
@@ -38,7 +36,6 @@ impl Fluid {
 /// as wide.
 ///
 /// Source: Lamb, Hydrodynamics (1932), §114 and §373.
-#[must_use]
 pub fn added_mass_of_spheroid(slenderness: f64) -> f64 {
     let alpha = alpha(1.0 - 1.0 / (slenderness * slenderness));
     alpha / (2.0 - alpha)

@@ -91,7 +91,6 @@ pub struct RestingBed {
 
 impl RestingBed {
     /// A bed that nobody has touched yet: grains without contact histories, put in spatial order.
-    #[must_use]
     pub fn without_history(space: Space, mut grains: Vec<Grain>) -> Self {
         sort_in_space(space, &mut grains);
         Self { space, grains, stages: Vec::new(), memories: Vec::new() }
@@ -100,7 +99,6 @@ impl RestingBed {
 
 impl RestingBed {
     /// Whether it has `n` grains, all of them finite and of some size, for a bed read from a file.
-    #[must_use]
     pub fn is_sound(&self, n: u64) -> bool {
         n > 0 && self.grains.len() as u64 == n && self.grains.iter().all(Grain::is_sound)
     }
@@ -112,7 +110,6 @@ impl GrainBed {
     ///
     /// # Panics
     /// If there are no grains.
-    #[must_use]
     pub fn new(
         resting: &RestingBed,
         container: Container,
@@ -178,25 +175,21 @@ impl GrainBed {
     }
 
     /// The container.
-    #[must_use]
     pub fn container(&self) -> &Container {
         &self.container
     }
 
     /// The image of `point` that lies between periodic sides.
-    #[must_use]
     pub fn image_inside(&self, point: Vec3) -> Vec3 {
         self.grains.period.inside(point)
     }
 
     /// The laws, in the order in which they act.
-    #[must_use]
     pub fn stages(&self) -> &[Box<dyn ContactStage>] {
         self.contacts.stages()
     }
 
     /// The bed as it stands, to be stored.
-    #[must_use]
     pub fn resting(&self) -> RestingBed {
         RestingBed {
             space: self.grains.space,
@@ -207,7 +200,6 @@ impl GrainBed {
     }
 
     /// Mean number of contacts of a grain, walls counted, the intruder not.
-    #[must_use]
     pub fn coordination(&self) -> f64 {
         let (pairs, surfaces) = self.contacts.count();
         let walls: usize = surfaces[..self.walls.len()].iter().sum();
@@ -216,14 +208,12 @@ impl GrainBed {
 
     /// Indices of the grains of every contact between grains that overlap, the smaller first,
     /// ascending.
-    #[must_use]
     pub fn touching_pairs(&self) -> Vec<[usize; 2]> {
         self.contacts.touching_pairs()
     }
 
     /// The first two grains, by identity, that overlap by more than `limit` radii of the smaller one,
     /// and their overlap (m).
-    #[must_use]
     pub fn pair_deeper_than(&self, limit: f64) -> Option<([u32; 2], f64)> {
         let (grains, id) = (&self.grains, &self.grains.id);
         self.contacts.listed_pairs().find_map(|[i, j]| {
@@ -310,7 +300,6 @@ impl GrainBed {
     }
 
     /// The fluid that the forces of this bed put around a body of `volume` (m³).
-    #[must_use]
     pub fn fluid_around(&self, volume: f64) -> Surrounding {
         grain_force::surrounding(&self.forces, sphere_radius(volume))
     }
@@ -358,7 +347,6 @@ impl GrainBed {
 
     /// The terms of the ledger of this bed with `intruder`: motion, gravity, the channels of the laws,
     /// then those of the boundaries and of a drive.
-    #[must_use]
     pub fn terms(&self, intruder: &dyn Mechanism) -> Vec<Term> {
         let kinetic = |name: &'static str| Term { name: name.into(), kind: TermKind::Kinetic };
         let potential = |name: &'static str| Term { name: name.into(), kind: TermKind::Potential };
@@ -442,14 +430,12 @@ impl GrainBed {
     }
 
     /// What grains cover of each part of the intruder, as of the last step.
-    #[must_use]
     pub fn footprints(&self) -> &[Footprint] {
         &self.sums.footprints[self.walls.len()..]
     }
 
     /// Share of the grains that move: whose kinetic energy would lift them by more than a hundredth of
     /// their diameter (–). It is γ of the three-shape manuscript, the share that takes part in dissipation.
-    #[must_use]
     pub fn moving_share(&self) -> f64 {
         // Without weight nothing has to be lifted: then every grain with any energy moves.
         let moving: u32 = self.sums_of_grains.iter().map(|block| block.moving).sum();
@@ -457,7 +443,6 @@ impl GrainBed {
     }
 
     /// Kinetic energy of all grains (J).
-    #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
         self.sums_of_grains.iter().map(|block| block.translation + block.rotation).sum()
     }
@@ -465,7 +450,6 @@ impl GrainBed {
     /// Mean energy (J) of what of a grain's motion comes to rest by itself: in a plane all of it, in space
     /// the translation. A sphere that spins about the normal of its only contact is stopped by nothing
     /// but a law of twisting.
-    #[must_use]
     pub(crate) fn mean_restless_energy(&self) -> f64 {
         let restless = match self.grains.space {
             Space::Planar => self.kinetic_energy(),
@@ -475,7 +459,6 @@ impl GrainBed {
     }
 
     /// Whether each grain touches another or a wall, in the order of memory.
-    #[must_use]
     pub fn lying(&self) -> Vec<bool> {
         self.contacts.lying(self.grains.len(), self.walls.len())
     }
@@ -523,13 +506,11 @@ impl GrainBed {
     }
 
     /// How many contacts the intruder has with walls.
-    #[must_use]
     pub fn intruder_wall_contacts(&self) -> usize {
         self.at_walls.n_touching()
     }
 
     /// The largest overlap in units of the smaller radius (m), and the identity of a grain that has it.
-    #[must_use]
     pub fn largest_overlap(&self) -> (f64, u32) {
         let deepest = self.sums.overlap;
         (deepest.overlap, self.grains.id[deepest.grain as usize])

@@ -88,7 +88,6 @@ impl MovingGrain {
 
 impl ForceOnGrain {
     /// Work done on a grain per time (W), negative where it is braked.
-    #[must_use]
     pub fn power(&self, grain: &MovingGrain) -> f64 {
         self.force.dot(&grain.velocity) + self.torque.dot(&grain.spin)
     }

@@ -72,7 +72,6 @@ pub(crate) struct BlockOfGrains<'a> {
 
 impl Grains {
     /// Grains in the given order.
-    #[must_use]
     pub fn new(space: Space, list: &[Grain]) -> Self {
         let mut grains = Self {
             space,
@@ -105,7 +104,6 @@ impl Grains {
     }
 
     /// The radius of grain `i` (m).
-    #[must_use]
     pub fn radius(&self, i: usize) -> f64 {
         match self.space {
             Space::Planar => Planar::radius(self.place(i)),
@@ -119,7 +117,6 @@ impl Grains {
     }
 
     /// The mean diameter of a grain (m).
-    #[must_use]
     pub fn mean_diameter(&self) -> f64 {
         2.0 * self.radii().sum::<f64>() / self.len() as f64
     }
@@ -130,14 +127,12 @@ impl Grains {
     }
 
     /// The moment of inertia of grain `i` (kg m²).
-    #[must_use]
     pub fn inertia(&self, i: usize) -> f64 {
         let radius = self.radius(i);
         self.inertia_coefficient * self.mass[i] * radius * radius
     }
 
     /// The centre of grain `i` (m).
-    #[must_use]
     pub fn position(&self, i: usize) -> Vec3 {
         let Motion { position, velocity, .. } = self.motion(i);
         match self.ahead > 0.0 {
@@ -152,21 +147,18 @@ impl Grains {
     }
 
     /// The velocity of grain `i` (m/s).
-    #[must_use]
     pub fn velocity(&self, i: usize) -> Vec3 {
         let Motion { velocity, velocity_now, .. } = self.motion(i);
         velocity - (velocity_now - velocity)
     }
 
     /// The spin of grain `i` (rad/s).
-    #[must_use]
     pub fn spin(&self, i: usize) -> Vec3 {
         let Motion { spin, spin_now, .. } = self.motion(i);
         spin - (spin_now - spin)
     }
 
     /// The force on grain `i` at the end of the last step, gravity included (N); zero before the first.
-    #[must_use]
     pub fn force(&self, i: usize) -> Vec3 {
         if self.ahead > 0.0 {
             let Motion { velocity, velocity_now, .. } = self.motion(i);
@@ -256,13 +248,11 @@ impl Grains {
     }
 
     /// How many there are.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.id.len()
     }
 
     /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
     }

@@ -12,7 +12,6 @@ const ROUNDS: usize = 1_000;
 
 /// Height (m) of the reference point of `surface`, turned by `orientation`, at which it first touches
 /// a grain or the floor when it is lowered along the vertical through `x`, `y`.
-#[must_use]
 pub fn height_in_touch(
     grains: &Grains,
     surface: &dyn Surface,

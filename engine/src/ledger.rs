@@ -53,7 +53,6 @@ pub struct Term {
 
 impl Term {
     /// The name in logs and JSON: `kinetic_grains_translation_J`, `dissipated_sliding_J`.
-    #[must_use]
     pub fn key(&self) -> String {
         let group = match self.kind {
             TermKind::Kinetic => "kinetic",
@@ -66,7 +65,6 @@ impl Term {
     }
 
     /// +1 where the term counts as energy that is there or was lost, −1 where it was put in.
-    #[must_use]
     pub fn sign(&self) -> f64 {
         if self.kind == TermKind::Channel(ChannelKind::Input) { -1.0 } else { 1.0 }
     }
@@ -94,26 +92,22 @@ pub struct Balance {
 
 impl Ledger {
     /// A ledger of these terms, all zero.
-    #[must_use]
     pub fn new(terms: Vec<Term>) -> Self {
         let values = vec![0.0; terms.len()];
         Self { terms, balance: Balance { values, ..Balance::default() } }
     }
 
     /// The terms, in the order of the log.
-    #[must_use]
     pub fn terms(&self) -> &[Term] {
         &self.terms
     }
 
     /// The values of the terms and of the closure.
-    #[must_use]
     pub fn balance(&self) -> &Balance {
         &self.balance
     }
 
     /// The value (J) of the term called `key` in logs.
-    #[must_use]
     pub fn value(&self, key: &str) -> Option<f64> {
         let index = self.terms.iter().position(|term| term.key() == key)?;
         Some(self.balance.values[index])
@@ -126,7 +120,6 @@ impl Ledger {
     }
 
     /// Largest |unaccounted| so far in units of `scale` (J).
-    #[must_use]
     pub fn closure(&self, scale: f64) -> f64 {
         self.balance.worst / scale
     }

@@ -17,13 +17,11 @@ pub type Quat = nalgebra::UnitQuaternion<f64>;
 
 /// The rotation by about |`angle`| radians around `angle` (Cayley map: exact to second order,
 /// symmetric in time, and free of functions whose bits depend on the system).
-#[must_use]
 pub fn cayley(angle: Vec3) -> Quat {
     Quat::new_normalize(nalgebra::Quaternion::from_parts(1.0, angle * 0.5))
 }
 
 /// The rotation by `angle` (rad) about y, which takes z towards x.
-#[must_use]
 pub fn turned_about_y(angle: f64) -> Quat {
     let (sin, cos) = libm::sincos(0.5 * angle);
     Quat::new_unchecked(nalgebra::Quaternion::new(cos, 0.0, sin, 0.0))

@@ -11,7 +11,6 @@ pub(crate) const BLOCK: usize = 512;
 
 /// The block of grain `i`.
 #[inline]
-#[must_use]
 pub(crate) fn block_of(i: usize) -> usize {
     i / BLOCK
 }
@@ -29,7 +28,6 @@ pub fn with_threads<R: Send>(n: usize, work: impl FnOnce() -> R + Send) -> Resul
 }
 
 /// How many threads the current pool has.
-#[must_use]
 pub fn n_threads() -> usize {
     rayon::current_num_threads()
 }

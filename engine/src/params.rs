@@ -33,13 +33,11 @@ impl Range {
     pub const NOT_NEGATIVE: Self = Self { min: 0.0, max: f64::MAX, includes_min: true };
 
     /// From `min` to `max`, both included.
-    #[must_use]
     pub const fn closed(min: f64, max: f64) -> Self {
         Self { min, max, includes_min: true }
     }
 
     /// Whether `value` lies inside; NaN never does.
-    #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         let above = if self.includes_min { value >= self.min } else { value > self.min };
         above && value <= self.max
@@ -66,14 +64,12 @@ pub struct ParamSpec {
 
 impl ParamSpec {
     /// A quantity that the file must give, from zero on.
-    #[must_use]
     pub const fn required(key: &'static str, dimension: Dimension, meaning: &'static str) -> Self {
         let (allowed, plausible) = (Range::NOT_NEGATIVE, Range::NOT_NEGATIVE);
         Self { key, dimension, default: ParamDefault::Required, allowed, plausible, meaning }
     }
 
     /// A pure number that the file must give, from zero on.
-    #[must_use]
     pub const fn number(key: &'static str, meaning: &'static str) -> Self {
         Self::required(key, Dimension::NONE, meaning)
     }
@@ -123,7 +119,6 @@ pub struct ParamTable {
 
 impl ParamTable {
     /// An empty table.
-    #[must_use]
     pub const fn new() -> Self {
         Self { entries: Vec::new() }
     }
@@ -140,7 +135,6 @@ impl ParamTable {
     ///
     /// # Panics
     /// If the table was not filled from the specs of whoever asks.
-    #[must_use]
     pub fn get(&self, key: &str) -> f64 {
         self.entries
             .iter()

@@ -45,7 +45,6 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Steps done.
-    #[must_use]
     pub fn step(&self) -> u64 {
         self.world.clock.step
     }
@@ -56,7 +55,6 @@ impl Simulation {
     ///
     /// # Panics
     /// If the intruder has no body.
-    #[must_use]
     pub fn new(bed: GrainBed, intruder: Box<dyn Mechanism>, settings: Settings) -> Self {
         let world = World::new(bed, intruder, settings.dt);
         let bodies = world.intruder.bodies();
@@ -81,9 +79,6 @@ impl Simulation {
     }
 
     /// Moves on by one step.
-    ///
-    /// # Errors
-    /// If the step cannot be trusted.
     pub fn advance(&mut self) -> Result<(), StepError> {
         self.world.advance()?;
         let (clock, intruder) = (self.world.clock, &*self.world.intruder);
@@ -96,13 +91,11 @@ impl Simulation {
     }
 
     /// Whether every body of the intruder has stopped, or time is up.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.courses.iter().all(Course::is_over) || self.world.clock.step >= self.last_step()
     }
 
     /// The step at which the run ends at the latest.
-    #[must_use]
     pub fn last_step(&self) -> u64 {
         steps_in(self.settings.duration, self.settings.dt)
     }
@@ -126,26 +119,22 @@ impl Simulation {
     }
 
     /// The bed.
-    #[must_use]
     pub fn bed(&self) -> &GrainBed {
         &self.world.bed
     }
 
     /// The intruder.
-    #[must_use]
     pub fn intruder(&self) -> &dyn Mechanism {
         &*self.world.intruder
     }
 
     /// The energy ledger.
-    #[must_use]
     pub fn ledger(&self) -> &Ledger {
         &self.world.books.ledger
     }
 
     /// Largest |energy unaccounted for| so far over the initial energy of the intruder; over what it
     /// gains in falling its own size, if it is let go from rest.
-    #[must_use]
     pub fn closure(&self) -> f64 {
         self.world.books.ledger.closure(self.energy_scale())
     }
@@ -162,37 +151,31 @@ impl Simulation {
     }
 
     /// Kinetic energy of the intruder at the start (J).
-    #[must_use]
     pub fn impact_energy(&self) -> f64 {
         self.impact_energy
     }
 
     /// Simulated time and steps.
-    #[must_use]
     pub fn clock(&self) -> Clock {
         self.world.clock
     }
 
     /// Stopping times, depth and energy given to the bed of each body of the intruder.
-    #[must_use]
     pub fn courses(&self) -> &[Course] {
         &self.courses
     }
 
     /// How much of the bed took part.
-    #[must_use]
     pub fn activity(&self) -> &Activity {
         &self.activity
     }
 
     /// Height (m) of the lowest point of the intruder at the start, from which depths count.
-    #[must_use]
     pub fn surface(&self) -> f64 {
         self.surface
     }
 
     /// Everything that changes during the run.
-    #[must_use]
     pub fn save(&self) -> Snapshot {
         Snapshot {
             world: self.world.save(),
@@ -205,7 +188,6 @@ impl Simulation {
 
     /// Takes back a saved state of the same run; `false`, and an unusable simulation, if it is of
     /// another one.
-    #[must_use]
     pub fn restore(&mut self, saved: Snapshot) -> bool {
         let is_of_this_run = saved.courses.len() == self.courses.len();
         self.courses = saved.courses;

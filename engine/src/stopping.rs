@@ -55,7 +55,6 @@ struct Stop {
 
 impl Stopping {
     /// An impact that starts so.
-    #[must_use]
     pub fn new(followed: Followed) -> Self {
         let Followed { position, velocity, reach } = followed;
         let speed = velocity.norm();
@@ -85,7 +84,6 @@ impl Stopping {
 
     /// The tip of a link that meets the bed so at `time` (s): it has stopped when it no longer sinks
     /// (S0, the end of the penetration).
-    #[must_use]
     pub(crate) fn of_tip(time: f64, followed: Followed) -> Self {
         let start = Self::new(followed);
         Self { is_tip: true, before: Sample { time, ..start.before }, now: time, ..start }
@@ -127,14 +125,12 @@ impl Stopping {
     }
 
     /// Whether both components have come to zero and the intruder has kept still since.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.stopping_time().is_some()
             && self.rest_since.is_some_and(|since| self.now - since >= REST_HOLD)
     }
 
     /// The larger stopping time (s); of a tip, the vertical one.
-    #[must_use]
     pub fn stopping_time(&self) -> Option<f64> {
         if self.is_tip {
             return self.vertical;
@@ -143,33 +139,28 @@ impl Stopping {
     }
 
     /// When the horizontal velocity first came to zero (s).
-    #[must_use]
     pub fn horizontal_time(&self) -> Option<f64> {
         self.horizontal.map(|stop| stop.time)
     }
 
     /// When the vertical velocity first came to zero (s).
-    #[must_use]
     pub fn vertical_time(&self) -> Option<f64> {
         self.vertical
     }
 
     /// Since when the speed has stayed below 5 % of the greatest (s).
-    #[must_use]
     pub fn rest_time(&self) -> Option<f64> {
         self.rest_since
     }
 
     /// Largest depth of the lowest point below where that was at the start (m), up to the stopping
     /// time.
-    #[must_use]
     pub fn depth(&self) -> f64 {
         self.deepest
     }
 
     /// Horizontal distance covered when the horizontal velocity first came to zero (m); until then,
     /// the distance so far.
-    #[must_use]
     pub fn range(&self) -> f64 {
         self.horizontal.map_or(self.before.range, |stop| stop.range)
     }

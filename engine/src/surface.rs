@@ -76,7 +76,6 @@ pub struct Placement {
 
 impl Placement {
     /// A part that never moves, its frame the world frame.
-    #[must_use]
     pub fn fixed() -> Self {
         Self {
             position: Vec3::zeros(),
@@ -109,13 +108,11 @@ impl Placement {
     /// Velocity (m/s), at the end of the step, of the point of the body that lies `arm` (m) from its
     /// reference point.
     #[inline]
-    #[must_use]
     pub(crate) fn velocity_at(&self, arm: Vec3) -> Vec3 {
         self.velocity_now + self.spin_now.cross(&arm)
     }
 
     /// Bound on the speed of any point of a part of radius `bounding_radius` (m/s).
-    #[must_use]
     pub(crate) fn max_speed(&self, bounding_radius: f64) -> f64 {
         self.velocity.norm() + self.spin.norm() * bounding_radius
     }

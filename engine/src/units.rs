@@ -75,7 +75,6 @@ impl Dimension {
 
     /// The dimension with these powers of kilogram, metre and second, if they are halves of small whole
     /// numbers but for round-off.
-    #[must_use]
     pub fn from_powers(powers: [f64; 3]) -> Option<Self> {
         let doubled = |power: f64| {
             let twice = (2.0 * power).round();
@@ -200,7 +199,6 @@ const KINDS: &[Kind] = &[
 ];
 
 /// `value` with its SI unit, such as `0.0446 m`; [`parse`] gives the same bits back.
-#[must_use]
 pub fn format_si(value: f64, dimension: Dimension) -> String {
     let digits = format!("{value:?}");
     let digits = digits.strip_suffix(".0").unwrap_or(&digits);
@@ -217,7 +215,6 @@ impl fmt::Display for Dimension {
 }
 
 /// `value` to so many significant digits; what is not finite stays as it is.
-#[must_use]
 pub fn significant(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }

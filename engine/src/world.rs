@@ -20,7 +20,6 @@ pub struct World {
 
 impl World {
     /// Finds the forces of the initial state and opens the ledger on it; `dt` (s) is the step.
-    #[must_use]
     pub fn new(mut bed: GrainBed, mut intruder: Box<dyn Mechanism>, dt: f64) -> Self {
         let mut books = Books::new(Ledger::new(bed.terms(&*intruder)));
         prime(&mut bed, &mut *intruder, &mut books, dt);
@@ -28,9 +27,6 @@ impl World {
     }
 
     /// Moves on by one step.
-    ///
-    /// # Errors
-    /// If the step cannot be trusted.
     pub fn advance(&mut self) -> Result<(), StepError> {
         self.clock.tick();
         let (number, dt) = (self.clock.step, self.clock.dt);
@@ -46,25 +42,21 @@ impl World {
     }
 
     /// The bed.
-    #[must_use]
     pub fn bed(&self) -> &GrainBed {
         &self.bed
     }
 
     /// The intruder.
-    #[must_use]
     pub fn intruder(&self) -> &dyn Mechanism {
         &*self.intruder
     }
 
     /// The energy ledger.
-    #[must_use]
     pub fn ledger(&self) -> &Ledger {
         &self.books.ledger
     }
 
     /// Simulated time and steps.
-    #[must_use]
     pub fn clock(&self) -> Clock {
         self.clock
     }

@@ -118,7 +118,6 @@ impl Followed {
     }
 
     /// Whether the end of the log has been read: it grows no more.
-    #[must_use]
     pub fn has_ended(&self) -> bool {
         self.records.complete()
     }

@@ -30,7 +30,6 @@ impl RunFiles {
     /// Of `run`: a log, or else a folder that holds `run.mcap`. What belongs to a log of that name is
     /// called as in the folder of a run, and what belongs to `name.mcap` is called `name.grains.mcap`
     /// and so on, so that several may lie side by side.
-    #[must_use]
     pub fn of(run: &Path) -> Self {
         if !is_log(run) {
             return Self::of(&run.join(RUN_LOG));
@@ -57,7 +56,6 @@ impl RunFiles {
 
     /// Likewise of a run that may not have ended. A log that is still written has another name; then the report
     /// has one too, so that it does not stand in the place of that of the whole run.
-    #[must_use]
     pub fn so_far(run: &Path) -> Self {
         let whole = Self::of(run);
         let partial = whole.partial();
@@ -71,7 +69,6 @@ impl RunFiles {
     }
 
     /// The names of its files while it goes on; it has no summary then.
-    #[must_use]
     pub fn partial(&self) -> Self {
         let of = |path: &Path| {
             let mut name = path.as_os_str().to_owned();
@@ -83,20 +80,17 @@ impl RunFiles {
     }
 
     /// Whether the run goes on or was killed: there is a log without an end, and no whole one.
-    #[must_use]
     pub fn are_unfinished(&self) -> bool {
         !self.log.is_file() && self.partial().log.is_file()
     }
 
     /// Whether a finished run is there: its log and its summary.
-    #[must_use]
     pub fn are_there(&self) -> bool {
         self.log.is_file() && self.summary.is_file()
     }
 }
 
 /// Whether `path` is called like a log.
-#[must_use]
 pub fn is_log(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "mcap")
 }

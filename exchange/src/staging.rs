@@ -25,15 +25,11 @@ impl Staging {
     }
 
     /// Where it is.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.0
     }
 
     /// Moves the file called `name` from it to `to`.
-    ///
-    /// # Errors
-    /// If the system refuses.
     pub fn hand_over(&self, name: &str, to: &Path) -> io::Result<()> {
         fs::rename(self.0.join(name), to)
     }

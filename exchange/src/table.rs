@@ -16,9 +16,6 @@ use crate::export::parquet::{failed, writer};
 use crate::export::whole_file::WholeFile;
 
 /// Writes `columns` into the file `path`, whole or not at all. The same columns give the same bytes.
-///
-/// # Errors
-/// If the file cannot be written.
 pub fn write_parquet(path: &Path, columns: &[TableColumn]) -> Result<(), ExportError> {
     let file = WholeFile::create(path.to_owned())?;
     written(file, columns).map_err(|error| failed(path, error))?.finish().map(drop)

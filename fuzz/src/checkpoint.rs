@@ -71,7 +71,6 @@ fn grains() -> GrainModel<'static> {
 ///
 /// # Panics
 /// Never: the model is a constant.
-#[must_use]
 pub fn bed() -> RestingBed {
     grains().read_bed().expect("a bed from a table")
 }
@@ -85,7 +84,6 @@ fn impact(resting: &RestingBed) -> Option<Simulation> {
 ///
 /// # Panics
 /// Never: the model is a constant.
-#[must_use]
 pub fn states(steps: &[u64]) -> Vec<Snapshot> {
     let mut simulation = impact(&bed()).expect("an impact");
     let mut advance_to = |step| {
@@ -102,7 +100,6 @@ pub fn states(steps: &[u64]) -> Vec<Snapshot> {
 ///
 /// # Panics
 /// Where it is neither.
-#[must_use]
 pub fn outcome(bytes: &[u8]) -> String {
     let Some((&kind, payload)) = bytes.split_first() else { return "nothing".to_owned() };
     let folder = tempfile::tempdir().expect("a temporary folder");

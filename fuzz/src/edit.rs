@@ -122,7 +122,6 @@ impl Choice {
 }
 
 /// `input` with `edits` one after another, which may take pieces of `other`.
-#[must_use]
 pub fn edited(input: &[u8], other: &[u8], edits: &[Edit]) -> Vec<u8> {
     let mut bytes = input.to_vec();
     edits.iter().for_each(|edit| edit.make(&mut bytes, other));

@@ -14,7 +14,6 @@ const POINTS: [[f64; 4]; 3] =
 ///
 /// # Panics
 /// Where that does not hold.
-#[must_use]
 pub fn outcome(bytes: &[u8]) -> String {
     let Ok(text) = std::str::from_utf8(bytes) else { return "no text".to_owned() };
     match Formula::parse(text, &VARIABLES) {

@@ -22,7 +22,6 @@ const CHUNK: u8 = 0x06;
 ///
 /// # Panics
 /// Where that does not hold.
-#[must_use]
 pub fn outcome(bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let here = folder.path().display().to_string();
@@ -81,7 +80,6 @@ fn push(records: &mut Vec<u8>, opcode: u8, body: &[u8]) {
 ///
 /// # Panics
 /// If it is no sound log.
-#[must_use]
 pub fn records_of(file: &[u8], most: usize) -> Vec<u8> {
     let mut found = Vec::new();
     for (_, body) in Records::new(&file[MAGIC.len()..]).filter(|(opcode, _)| *opcode == CHUNK) {

@@ -7,7 +7,6 @@ use configs::{Color, ConfigError, LoadOptions, Loaded, Model, ModelSource};
 ///
 /// # Panics
 /// Where that does not hold.
-#[must_use]
 pub fn outcome(bytes: &[u8]) -> String {
     let Ok(text) = std::str::from_utf8(bytes) else { return "no text".to_owned() };
     match load(text) {

@@ -13,7 +13,6 @@ pub const BETWEEN: &[u8] = b"\n=====\n";
 ///
 /// # Panics
 /// Where that does not hold.
-#[must_use]
 pub fn outcome(bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut rest = bytes;

@@ -35,13 +35,11 @@ pub static SHAPES: &[&ShapeEntry] = &[
 ];
 
 /// The names of all shapes.
-#[must_use]
 pub fn names() -> Vec<&'static str> {
     SHAPES.iter().map(|entry| entry.name).collect()
 }
 
 /// The shapes that may have a shaft, in words.
-#[must_use]
 pub fn with_shafts() -> String {
     let names = SHAPES.iter().filter(|entry| entry.under_shaft.is_some()).map(|entry| entry.name);
     let names: Vec<&str> = names.collect();
@@ -53,7 +51,6 @@ pub fn with_shafts() -> String {
 }
 
 /// The shape called `name`.
-#[must_use]
 pub fn find(name: &str) -> Option<&'static ShapeEntry> {
     SHAPES.iter().find(|entry| entry.name == name).copied()
 }

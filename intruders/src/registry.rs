@@ -53,7 +53,6 @@ pub struct ShapeEntry {
 
 impl ShapeEntry {
     /// Whether it is a shape of this space.
-    #[must_use]
     pub fn is_of(&self, space: Space) -> bool {
         match space {
             Space::Planar => self.planar,
@@ -62,7 +61,6 @@ impl ShapeEntry {
     }
 
     /// Whether a resistive medium of this space knows it.
-    #[must_use]
     pub fn is_of_resistance(&self, space: Space) -> bool {
         self.is_of(space) && (space == Space::Spatial || self.planar_in_resistance)
     }

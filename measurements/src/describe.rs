@@ -4,7 +4,6 @@ use crate::{Bed, Condition, Geometry, Kind, Loaded, MeasurementSet, Role, Run};
 
 impl Loaded {
     /// [`MeasurementSet::describe`] with the columns that were understood.
-    #[must_use]
     pub fn describe(&self) -> String {
         self.set.describe_with(&self.tables)
     }
@@ -12,7 +11,6 @@ impl Loaded {
 
 impl MeasurementSet {
     /// What the set holds, for a reader at a terminal: conditions, roles, runs, units and notes.
-    #[must_use]
     pub fn describe(&self) -> String {
         self.describe_with(&[])
     }

@@ -14,7 +14,6 @@ const READER: (FileKind, &dyn Fn(TableReader<'_>)) =
     (FileKind::MeasurementSet, &|root| drop(document::read(root)));
 
 /// The schema.
-#[must_use]
 pub fn set() -> Value {
     let mut gathered = Gathered::new(format());
     for text in probes() {
@@ -25,7 +24,6 @@ pub fn set() -> Value {
 }
 
 /// What a reader asks of the text of a set; nothing where it is no TOML.
-#[must_use]
 pub fn read_set(text: &str) -> Asked {
     asked(READER, text, None).pop().unwrap_or_default()
 }

@@ -93,7 +93,6 @@ pub struct MeasurementSet {
 
 impl MeasurementSet {
     /// A set in one bed, of which no run is made yet; a body has stopped where it rests.
-    #[must_use]
     pub fn new(id: impl Into<String>, kind: Kind, bed: Bed, conditions: Vec<Condition>) -> Self {
         Self {
             id: id.into(),
@@ -117,20 +116,17 @@ impl MeasurementSet {
     }
 
     /// The bed of `condition`.
-    #[must_use]
     pub fn bed_of(&self, condition: &Condition) -> &Bed {
         let named = condition.bed.and_then(|at| self.beds.get(at));
         named.map_or(&self.bed, |named| &named.bed)
     }
 
     /// Gravity (m/s²) in the bed that `run` was made in.
-    #[must_use]
     pub(crate) fn gravity_of(&self, run: &Run) -> f64 {
         self.bed_of(&self.conditions[run.condition]).gravity
     }
 
     /// Acceleration (m/s²) with which the body of `condition` falls at its speed at contact, just above the bed.
-    #[must_use]
     pub fn fall_of(&self, condition: &Condition) -> f64 {
         let bed = self.bed_of(condition);
         let in_fluid = bed
@@ -149,7 +145,6 @@ impl MeasurementSet {
     }
 
     /// Mean diameter (m) of the coarsest grains that are stated; 0 where none is.
-    #[must_use]
     pub fn coarsest_grains(&self) -> f64 {
         self.all_beds().filter_map(|bed| bed.grain_diameter).fold(0.0, f64::max)
     }
@@ -286,7 +281,6 @@ pub struct Bed {
 
 impl Bed {
     /// A bed of this bulk density (kg/m³, planar kg/m²) under `gravity` (m/s²), of which nothing else is known.
-    #[must_use]
     pub fn new(geometry: Geometry, bulk_density: Option<f64>, gravity: f64) -> Self {
         let stated = StatedBed::default();
         Self { geometry, bulk_density, gravity, grain_diameter: None, stated }
@@ -421,7 +415,6 @@ pub struct Condition {
 
 impl Condition {
     /// A body, by its shape, diameter (m) and mass (kg), that falls straight down at `speed` (m/s) and is fitted to.
-    #[must_use]
     pub fn straight_down(
         id: impl Into<String>,
         (shape, diameter, mass): (&str, f64, f64),
@@ -477,7 +470,6 @@ pub struct Run {
 
 impl Run {
     /// A run under the condition of this index, of which nothing is measured yet.
-    #[must_use]
     pub fn new(name: String, condition: usize) -> Self {
         Self {
             name,
@@ -495,7 +487,6 @@ impl Run {
     }
 
     /// Whether anything was read along its way.
-    #[must_use]
     pub fn has_readings(&self) -> bool {
         !self.frames.is_empty() || !self.samples.is_empty()
     }

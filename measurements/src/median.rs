@@ -4,7 +4,6 @@ use crate::{MeasurementSet, Run};
 
 /// The median of `numbers`, the upper of the two middle ones if their count is even; `None` if there are none. Numbers that are
 /// not finite are ordered by [`f64::total_cmp`].
-#[must_use]
 pub fn median(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut all: Vec<f64> = numbers.into_iter().collect();
     all.sort_by(f64::total_cmp);
@@ -27,7 +26,6 @@ pub(crate) fn of_runs(
 const MEDIAN_OF_SIZE: f64 = 0.6745;
 
 /// The standard deviation of normal numbers of these `sizes`, by their median; zero where none is finite.
-#[must_use]
 pub fn deviation_of(sizes: impl IntoIterator<Item = f64>) -> f64 {
     let finite = sizes.into_iter().filter(|size| size.is_finite());
     median(finite).unwrap_or(0.0) / MEDIAN_OF_SIZE

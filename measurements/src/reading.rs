@@ -14,7 +14,6 @@ const CONTRADICT: f64 = 4.0;
 
 impl Reading {
     /// The mean of `readings`, with an error that their scatter shows too.
-    #[must_use]
     pub fn mean(readings: impl Iterator<Item = Self> + Clone) -> Self {
         let n = readings.clone().count().max(1) as f64;
         let value = readings.clone().map(|one| one.value).sum::<f64>() / n;

@@ -70,7 +70,6 @@ pub static SHIPPED_SETS: &[ShippedSet] = &[
 ];
 
 /// The one called `name`.
-#[must_use]
 pub fn find(name: &str) -> Option<&'static ShippedSet> {
     SHIPPED_SETS.iter().find(|set| set.name == name)
 }

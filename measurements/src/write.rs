@@ -16,16 +16,10 @@ use crate::{
 
 /// Why a set cannot be written.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum WriteError {
-    /// The file system refuses.
     #[error("{path}: {source}", path = path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A name that a cell cannot hold.
+    Io { path: PathBuf, source: io::Error },
     #[error("the run `{0}` cannot be written: blanks at its ends, a line break, or nothing at all")]
     Name(String),
 }

@@ -43,9 +43,6 @@ pub struct Frame<'n> {
 }
 
 /// A chart that fills `area`, over the ranges `x` and `y`, with a grid, about `labels` numbers along x, and `names`.
-///
-/// # Errors
-/// What drawing comes to.
 pub fn chart<'a, 'b>(
     area: &'a Area<'b>,
     ranges: [Range<f64>; 2],
@@ -57,9 +54,6 @@ pub fn chart<'a, 'b>(
 
 impl Frame<'_> {
     /// Draws it in `area`.
-    ///
-    /// # Errors
-    /// What drawing comes to.
     pub fn draw<'a, 'b>(
         self,
         area: &'a Area<'b>,

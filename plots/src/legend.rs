@@ -26,15 +26,11 @@ pub enum Sign {
 }
 
 /// Height of a legend of `rows` (pixels).
-#[must_use]
 pub fn height(rows: usize) -> u32 {
     ROW * rows as u32 + 14
 }
 
 /// Draws `rows` from the top of `area`.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn draw(area: &Area<'_>, rows: &[(Sign, String)]) -> Drawn {
     for (row, (sign, text)) in rows.iter().enumerate() {
         let y = (4 + ROW / 2 + ROW * row as u32) as i32;
@@ -60,9 +56,6 @@ fn draw_sign(area: &Area<'_>, sign: Sign, y: i32) -> Drawn {
 }
 
 /// The mark of what is significant, around `place`.
-///
-/// # Errors
-/// What drawing comes to.
 pub fn mark(area: &Area<'_>, place: (i32, i32)) -> Drawn {
     area.draw(&Circle::new(place, 3, WHITE.filled()))?;
     area.draw(&Circle::new(place, 3, BLACK.stroke_width(1)))

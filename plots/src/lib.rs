@@ -50,9 +50,6 @@ pub type Area<'a> = DrawingArea<Canvas<'a>, Shift>;
 pub type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// A picture of `size` (pixels) on white.
-///
-/// # Errors
-/// What `draw` comes to.
 pub fn svg(
     size: (u32, u32),
     draw: impl for<'a> FnOnce(&Area<'a>) -> Drawn,
@@ -71,37 +68,31 @@ pub fn svg(
 }
 
 /// The colour of model, effect or series `index`.
-#[must_use]
 pub fn colour(index: usize) -> RGBColor {
     COLOURS[index % COLOURS.len()]
 }
 
 /// Letters that begin at their place.
-#[must_use]
 pub fn letters() -> TextStyle<'static> {
     ("sans-serif", LETTERS).into_font().into()
 }
 
 /// Letters around their place.
-#[must_use]
 pub fn centred() -> TextStyle<'static> {
     letters().pos(Pos::new(HPos::Center, VPos::Center))
 }
 
 /// Letters that run upwards and end at their place.
-#[must_use]
 pub fn upright() -> TextStyle<'static> {
     letters().transform(FontTransform::Rotate270).pos(Pos::new(HPos::Right, VPos::Center))
 }
 
 /// `value` to so many significant digits.
-#[must_use]
 pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
 /// A number as labels have it: three digits, no zeros behind the point.
-#[must_use]
 pub fn short(value: f64) -> String {
     let value = rounded(value, 3);
     match value.abs() {
@@ -113,7 +104,6 @@ pub fn short(value: f64) -> String {
 }
 
 /// As much of `text` as fits `width` pixels, with a mark where some is missing.
-#[must_use]
 pub fn fitting(text: &str, width: u32) -> String {
     let room = (f64::from(width) / LETTER) as usize;
     if text.chars().count() <= room {
@@ -123,7 +113,6 @@ pub fn fitting(text: &str, width: u32) -> String {
 }
 
 /// `low` and `high` with a ninth of their distance beyond either.
-#[must_use]
 pub fn padded(low: f64, high: f64) -> std::ops::Range<f64> {
     let distance = high - low;
     let pad = if distance > 0.0 { distance / 9.0 } else { low.abs().max(1.0) / 9.0 };

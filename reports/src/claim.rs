@@ -145,7 +145,6 @@ pub(crate) fn misses(diagnosis: &Value) -> bool {
 
 /// Whether the model of a `diagnosis` that names nothing explains the data only if conditions differ by more than their repeats
 /// do, as beds that are poured anew.
-#[must_use]
 pub fn explains_if_conditions_differ(diagnosis: &Value) -> bool {
     texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "conditions-differ")
 }
@@ -288,7 +287,6 @@ fn bars(diagnosis: &Value) -> Option<String> {
 }
 
 /// How often such a verdict is right, in a sentence; none where nothing can be told.
-#[must_use]
 pub fn probability(diagnosis: &Value) -> Option<String> {
     let of = &diagnosis["probability"];
     let share = |key: &str| of[key].as_f64();

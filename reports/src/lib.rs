@@ -49,54 +49,28 @@ pub const FILE: &str = "report.html";
 
 /// Why there is no report.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum ReportError {
-    /// A file cannot be read.
     #[error("cannot read {}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
-    /// A folder without results.
+    Io { path: PathBuf, source: io::Error },
     #[error(
         "{} holds no finished run, campaign, comparison, diagnosis or validation: no summary.json, \
          {PLAN}, comparison.json, diagnosis.json or validation.json",
         folder.display()
     )]
-    Nothing {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// A log that is not beside the summary of its run.
+    Nothing { folder: PathBuf },
     #[error("{} is missing; it has the results of {}", summary.display(), log.display())]
-    NoSummary {
-        /// The log.
-        log: PathBuf,
-        /// The summary.
-        summary: PathBuf,
-    },
-    /// A file of results that is not what its name says.
+    NoSummary { log: PathBuf, summary: PathBuf },
     #[error("{file} cannot be read: {why}")]
-    Misunderstood {
-        /// The file.
-        file: String,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// The log of a run.
+    Misunderstood { file: String, why: String },
     #[error(transparent)]
     Log(#[from] ReadError),
-    /// What is seen of a run.
     #[error(transparent)]
     Scene(#[from] scene::SceneError),
-    /// The folder of a campaign.
     #[error(transparent)]
     Campaign(#[from] FolderError),
-    /// A figure.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// The page itself.
     #[error("cannot write a page: {0}")]
     Page(#[from] askama::Error),
 }
@@ -153,7 +127,6 @@ pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
 }
 
 /// The page of the results of a comparison, a diagnosis or a validation; `None` if `texts` are of none.
-#[must_use]
 pub fn of_texts(texts: &Texts) -> Option<Result<String, ReportError>> {
     if texts.contains_key(published::RESULT) {
         return Some(published::page(texts));
@@ -165,17 +138,11 @@ pub fn of_texts(texts: &Texts) -> Option<Result<String, ReportError>> {
 }
 
 /// The page of a list of runs.
-///
-/// # Errors
-/// If a figure cannot be drawn.
 pub fn of_list(summary: &ListSummary) -> Result<String, ReportError> {
     list::page(summary)
 }
 
 /// The page of what a campaign has come to.
-///
-/// # Errors
-/// If a figure cannot be drawn.
 pub fn of_campaign(results: &Results) -> Result<String, ReportError> {
     campaign::page(results)
 }

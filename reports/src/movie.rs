@@ -21,28 +21,18 @@ pub use mp4::{Beside, Ffmpeg, find_ffmpeg};
 
 /// Why there is no film.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum MovieError {
-    /// The logs of the run.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A picture.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// A file that cannot be written.
     #[error("cannot write: {0}")]
     Write(#[from] io::Error),
-    /// A size that a GIF cannot have.
     #[error("a GIF has at most 65535 pixels a side, not {0} x {1}")]
     TooLarge(u32, u32),
-    /// The program that makes MP4.
     #[error("{} has failed: {why}", program.display())]
-    Ffmpeg {
-        /// The program.
-        program: PathBuf,
-        /// What it says.
-        why: String,
-    },
-    /// It was asked to stop.
+    Ffmpeg { program: PathBuf, why: String },
     #[error("stopped before the end")]
     Stopped,
 }
@@ -79,7 +69,6 @@ pub enum FilmFormat {
 const WIDTH: f64 = 640.0;
 
 /// The size of a picture of `window` as wide as this; both sides are even, as films ask for.
-#[must_use]
 pub fn size_for(window: &Extent, width: u32) -> (u32, u32) {
     let inner = f64::from(width).min(WIDTH);
     let height = f64::from(height_for(window, inner as u32)) * f64::from(width) / inner;
@@ -89,7 +78,6 @@ pub fn size_for(window: &Extent, width: u32) -> (u32, u32) {
 
 impl Film<'_> {
     /// The picture of `scene`.
-    #[must_use]
     pub fn sheet(&self, scene: &Scene) -> Sheet {
         let scale = (f64::from(self.size.0) / WIDTH).max(1.0);
         let (w, h) = self.size;
@@ -114,9 +102,6 @@ impl Film<'_> {
     }
 
     /// The scenes of its frames.
-    ///
-    /// # Errors
-    /// If the log cannot be read.
     pub fn scenes(&self) -> Result<Vec<Scene>, MovieError> {
         let mut scenes = Vec::new();
         self.impact.scenes(&self.view, &self.window, &self.frames, |scene| {

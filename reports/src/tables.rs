@@ -21,14 +21,12 @@ impl Table {
     }
 
     /// Whether it has no rows.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 }
 
 /// Root mean square errors of the `models` of a comparison, where fitted and held out.
-#[must_use]
 pub fn errors(models: &[Value]) -> Table {
     let columns = columns();
     let measured: Vec<&Column> = columns
@@ -60,7 +58,6 @@ pub fn errors(models: &[Value]) -> Table {
 }
 
 /// The refitted parameters of the `models` of a comparison; beds have none.
-#[must_use]
 pub fn parameters(models: &[Value]) -> Table {
     let mut table = Table::new(&["model", "parameter", "value", "standard error", "unit"]);
     let none = Map::new();
@@ -80,7 +77,6 @@ pub fn parameters(models: &[Value]) -> Table {
 }
 
 /// Where the force of the `models` of a comparison is wrong.
-#[must_use]
 pub fn failures(models: &[Value]) -> Table {
     let mut table = Table::new(&["model", "over", "from", "to", "force error (%)", "se (%)"]);
     for model in models {
@@ -101,7 +97,6 @@ pub fn failures(models: &[Value]) -> Table {
 }
 
 /// The effects that a diagnosis ranks, the best first.
-#[must_use]
 pub fn ranking(diagnosis: &Value) -> Table {
     let head =
         ["effect", "q", "se", "fall of \u{3c7}\u{b2}", "behind", "ranked first if there", "limit"];
@@ -157,7 +152,6 @@ const NEXT: [(&str, &str); 9] = [
 
 /// The conditions to measure next. A condition that is chosen twice has one row with the sum of its runs. Columns without any
 /// value are left out.
-#[must_use]
 pub fn next(diagnosis: &Value) -> Table {
     let all = list(&diagnosis["next"]);
     let is_stated = |key: &str| {
@@ -194,7 +188,6 @@ pub fn next(diagnosis: &Value) -> Table {
 }
 
 /// What an earlier diagnosis expected of new runs, and what came.
-#[must_use]
 pub fn new_runs(after: &Value) -> Table {
     let mut head = vec!["condition".to_owned(), "runs".to_owned(), "measured".to_owned()];
     let hypotheses = list(&after["hypotheses"]);
@@ -224,7 +217,6 @@ pub fn new_runs(after: &Value) -> Table {
 }
 
 /// How new runs moved the probabilities of the hypotheses.
-#[must_use]
 pub fn hypotheses(after: &Value) -> Table {
     let head =
         ["hypothesis", "probability before", "after", "\u{3c7}\u{b2} per datum of the new runs"];
@@ -241,7 +233,6 @@ pub fn hypotheses(after: &Value) -> Table {
 }
 
 /// Simulated sets by what was hidden in them and what was said.
-#[must_use]
 pub fn calibration(calibration: &Value) -> Table {
     let head = [
         "truth",

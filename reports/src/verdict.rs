@@ -7,7 +7,6 @@ use crate::claim;
 use crate::numbers::{text, texts};
 
 /// The verdict of a diagnosis, the object of its `diagnosis.json`, in a sentence.
-#[must_use]
 pub fn verdict_in_words(diagnosis: &Value) -> String {
     let effects = texts(&diagnosis["effects"]);
     match claim::verdict_of(diagnosis) {
@@ -53,7 +52,6 @@ fn named_errors(errors: &Value) -> String {
 }
 
 /// An error of the apparatus with its size: `clock-zero 0.7 ± 0.1 ms`.
-#[must_use]
 pub fn apparatus_error(error: &Value) -> String {
     let (id, size) = error_in_words(error, "value", "se");
     format!("{id} {size}")
@@ -100,7 +98,6 @@ pub(crate) fn error_in_words(error: &Value, value: &str, se: &str) -> (String, S
 }
 
 /// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
-#[must_use]
 pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
     let verdict = claim::verdict_of(diagnosis);
     let names = verdict.names_effects()
@@ -123,7 +120,6 @@ pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
 }
 
 /// What each effect that a diagnosis names is as a force, in a sentence each; none of what is no force.
-#[must_use]
 pub fn forces_in_words(diagnosis: &Value) -> Vec<String> {
     let force = |amplitude: &Value| {
         let (id, force) = (text(&amplitude["id"]), &amplitude["force"]);

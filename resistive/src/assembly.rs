@@ -114,7 +114,6 @@ pub struct Compact {
 impl Compact {
     /// A body of `mass` (kg) and moment of `inertia` about y (kg m²), whose centre is `reach` (m)
     /// above its lowest point.
-    #[must_use]
     pub fn new(silhouette: Arc<dyn Silhouette>, reach: f64, mass: f64, inertia: f64) -> Self {
         let (diameter, frontal_area) = (silhouette.diameter(), silhouette.frontal_area());
         let volume = silhouette.volume(silhouette.height());
@@ -123,7 +122,6 @@ impl Compact {
 
     /// The state with the lowest point at the surface at x = 0, moving with `velocity` (m/s) and
     /// turning with `spin` about y (rad/s).
-    #[must_use]
     pub fn at_surface(velocity: Vec3, spin: f64) -> State {
         State { rate: [velocity.x, velocity.z, spin, 0.0], ..State::default() }
     }

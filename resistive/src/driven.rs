@@ -15,7 +15,6 @@ impl Driven {
     ///
     /// # Panics
     /// If it has more than one part.
-    #[must_use]
     pub fn new(assembly: Box<dyn Assembly>) -> Self {
         assert_eq!(assembly.n_parts(), 1, "a drive moves one body");
         Self(assembly)

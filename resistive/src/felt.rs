@@ -18,7 +18,6 @@ pub struct Accelerometer<'a> {
 impl<'a> Accelerometer<'a> {
     /// Will hold the readings at `times` (s), in rising order and none before the start, of a body in `gravity`
     /// (m/s²); after the end the body rests.
-    #[must_use]
     pub fn at(times: &'a [f64], gravity: f64) -> Self {
         Self { times, gravity, readings: Vec::with_capacity(times.len()) }
     }

@@ -72,7 +72,6 @@ pub struct PartStop {
 
 impl PartStop {
     /// The later of the two components (s).
-    #[must_use]
     pub fn time(&self) -> Option<f64> {
         Some(self.horizontal?.max(self.vertical?))
     }
@@ -128,7 +127,6 @@ struct Progress {
 
 impl Impact {
     /// `assembly` in the state `start`, in contact or above, on `bed` under `laws` and the fluid of the bed.
-    #[must_use]
     pub fn new(
         assembly: Box<dyn Assembly>,
         mut laws: Vec<Box<dyn ResistanceLaw>>,
@@ -163,13 +161,11 @@ impl Impact {
     }
 
     /// What falls.
-    #[must_use]
     pub fn assembly(&self) -> &dyn Assembly {
         &*self.assembly
     }
 
     /// The laws, in the order in which they act.
-    #[must_use]
     pub fn laws(&self) -> &[Box<dyn ResistanceLaw>] {
         &self.laws
     }
@@ -181,13 +177,11 @@ impl Impact {
     }
 
     /// What it falls into.
-    #[must_use]
     pub fn bed(&self) -> &Surroundings {
         &self.bed
     }
 
     /// The state at time 0.
-    #[must_use]
     pub fn start(&self) -> &State {
         &self.start
     }
@@ -315,7 +309,6 @@ impl Impact {
 
     /// Force (N) of the medium on part `index` where it is and as it moves in `state`, without what holds a part that
     /// rests.
-    #[must_use]
     pub fn force_in(&self, index: usize, state: &State) -> Vec3 {
         let loaded = self.system().loaded(index, state, &self.last_modes(state));
         loaded.load.on_part(&loaded.motion).force

@@ -124,7 +124,6 @@ pub struct Motion {
 impl Motion {
     /// The sense of the horizontal motion; it changes smoothly within 3° of a vertical path, where a force across the motion
     /// has no side to act to.
-    #[must_use]
     pub fn leaning(&self) -> f64 {
         /// Sine of the angle from the vertical.
         const UPRIGHT: f64 = 0.05;

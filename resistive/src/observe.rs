@@ -25,13 +25,11 @@ pub struct SolverStep<'a, 'b> {
 
 impl SolverStep<'_, '_> {
     /// Where it begins (s).
-    #[must_use]
     pub fn from(&self) -> f64 {
         self.from
     }
 
     /// Where it ends (s).
-    #[must_use]
     pub fn to(&self) -> f64 {
         self.to
     }
@@ -51,13 +49,11 @@ pub struct Trajectory<'a> {
 impl<'a> Trajectory<'a> {
     /// Will hold the states at `times` (s), in rising order and none before the start; after the end
     /// the body rests.
-    #[must_use]
     pub fn at(times: &'a [f64]) -> Self {
         Self { times, states: Vec::with_capacity(times.len()) }
     }
 
     /// One state per time.
-    #[must_use]
     pub fn states(&self) -> &[State] {
         &self.states
     }

@@ -102,13 +102,11 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
     }
 
     /// The ledger as it stands.
-    #[must_use]
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
     /// Energy given to the medium by each part (J).
-    #[must_use]
     pub fn given(&self) -> &[f64; PARTS] {
         &self.given
     }

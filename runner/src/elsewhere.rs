@@ -50,7 +50,6 @@ pub struct ModelText {
 
 impl ModelText {
     /// That of `model`.
-    #[must_use]
     pub fn of(model: &Model) -> Self {
         let table = match &model.medium {
             Medium::Grains(medium) => match &medium.bed.source {

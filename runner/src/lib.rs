@@ -20,7 +20,6 @@ pub use error::CampaignError;
 pub use workers::{Progress, Stage, Unattended, Watch, WorkerSignals, Workers};
 
 /// The folder of prepared beds and finished impacts: the one `asked` for, else `$PLUNGE_CACHE`, else `runs/.cache`.
-#[must_use]
 pub fn cache_folder(asked: Option<&Path>) -> PathBuf {
     let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|dir| !dir.is_empty());
     asked
@@ -30,7 +29,6 @@ pub fn cache_folder(asked: Option<&Path>) -> PathBuf {
 }
 
 /// `key` in hexadecimal, as names of files have it.
-#[must_use]
 pub fn hexadecimal(key: &[u8; 32]) -> String {
     key.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -82,7 +82,6 @@ impl Control for WorkerSignals<'_> {
 
 impl WorkerSignals<'static> {
     /// Nothing stops it, and what the user should know goes to stderr.
-    #[must_use]
     pub fn unattended() -> Self {
         Self { stop: &|| false, warn: &|message| eprintln!("warning: {message}") }
     }

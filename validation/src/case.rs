@@ -43,7 +43,6 @@ pub enum Expected {
 
 impl Outcome {
     /// A value that has to come out as `value` within `tolerance`.
-    #[must_use]
     pub fn near(
         what: impl Into<String>,
         measured: f64,
@@ -54,25 +53,21 @@ impl Outcome {
     }
 
     /// A residual that has to stay within `limit`.
-    #[must_use]
     pub fn at_most(what: impl Into<String>, measured: f64, limit: f64, why: &'static str) -> Self {
         Self { what: what.into(), measured, expected: Expected::AtMost(limit), why }
     }
 
     /// A ratio that has to reach `limit`.
-    #[must_use]
     pub fn at_least(what: impl Into<String>, measured: f64, limit: f64, why: &'static str) -> Self {
         Self { what: what.into(), measured, expected: Expected::AtLeast(limit), why }
     }
 
     /// A line of a table in Markdown: what, measured, expected.
-    #[must_use]
     pub fn markdown(&self) -> String {
         format!("| {} | {:.6e} | {} |", self.what, self.measured, self.expected)
     }
 
     /// Whether what was measured is right; what is not a number never is.
-    #[must_use]
     pub fn holds(&self) -> bool {
         match self.expected {
             Expected::Near { value, tolerance } => (self.measured - value).abs() <= tolerance,

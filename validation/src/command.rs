@@ -34,7 +34,6 @@ struct On(Option<Elsewhere>);
 
 impl Impacts {
     /// Who runs them, if not this process.
-    #[must_use]
     pub fn elsewhere(&self) -> Option<&Elsewhere> {
         self.on.0.as_ref()
     }
@@ -74,7 +73,6 @@ impl Task for StudyTask {
 
 /// Does the one task that a scheduler called this program for, if one did: the word for it, a list, a cache
 /// and a number. Gives the status to end with.
-#[must_use]
 pub fn task() -> Option<ExitCode> {
     let mut words = std::env::args_os().skip(1);
     if words.next()? != WORD {

@@ -37,7 +37,6 @@ pub struct Encounter {
 impl Encounter {
     /// `gap` (m) apart along x, the grain with `velocity` (m/s) relative to the target and with
     /// `spin` (rad/s).
-    #[must_use]
     pub fn new(
         (grain, target): (Size, Target),
         gap: f64,
@@ -67,7 +66,6 @@ impl Encounter {
     }
 
     /// Position (m) and velocity (m/s) of the grain relative to the target.
-    #[must_use]
     pub fn relative(&self) -> (Vec3, Vec3) {
         let grains = self.world.bed().grains.iter();
         let mut states: Vec<(u32, Vec3, Vec3)> =
@@ -80,7 +78,6 @@ impl Encounter {
     }
 
     /// Overlap (m); negative apart.
-    #[must_use]
     pub fn overlap(&self) -> f64 {
         self.reach - self.relative().0.norm()
     }

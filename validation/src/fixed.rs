@@ -15,7 +15,6 @@ impl FixedSpheres {
     ///
     /// # Panics
     /// If the sphere is not among the shapes.
-    #[must_use]
     pub fn new(radius: f64, centres: &[Vec3]) -> Self {
         let params = ParamTable::from_iter([("diameter", 2.0 * radius)]);
         let shape = intruders::find("sphere").expect("the sphere is registered");

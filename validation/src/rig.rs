@@ -86,7 +86,6 @@ pub const S1: Linear = Linear {
 
 impl Linear {
     /// The law, ready to run.
-    #[must_use]
     pub fn stage(&self) -> Box<dyn ContactStage> {
         stage(
             "linear-spring-dashpot",
@@ -104,7 +103,6 @@ impl Linear {
 }
 
 /// Rolling resistance with the given μ_r and η_r (–).
-#[must_use]
 pub fn rolling(rolling_friction: f64, rolling_damping_ratio: f64) -> Box<dyn ContactStage> {
     stage(
         "rolling-resistance",
@@ -116,14 +114,12 @@ pub fn rolling(rolling_friction: f64, rolling_damping_ratio: f64) -> Box<dyn Con
 ///
 /// # Panics
 /// If there is no such law, or a value is missing.
-#[must_use]
 pub fn stage(name: &str, values: &[(&'static str, f64)]) -> Box<dyn ContactStage> {
     let params: ParamTable = values.iter().copied().collect();
     (contact_laws::find(name).expect("the law is registered").build)(&params)
 }
 
 /// A bed of these grains; each is numbered by its place in the list.
-#[must_use]
 pub fn bed(
     (space, container): (Space, Container),
     gravity: Vec3,
@@ -138,7 +134,6 @@ pub fn bed(
 }
 
 /// Discs without gravity, stepped by `dt` (s).
-#[must_use]
 pub fn free(grains: &[Grain], stages: Vec<Box<dyn ContactStage>>, dt: f64) -> World {
     let bed = bed((Space::Planar, ROOM), Vec3::zeros(), grains, stages, 0);
     World::new(bed, Box::new(NoIntruder), dt)
@@ -146,7 +141,6 @@ pub fn free(grains: &[Grain], stages: Vec<Box<dyn ContactStage>>, dt: f64) -> Wo
 
 /// One grain with the moment of inertia `inertia` m r² at rest on the floor, in equilibrium with the part of
 /// `gravity` (m/s²) along z, in a room so wide that it may move for metres; then given `velocity` and `spin`.
-#[must_use]
 pub fn on_floor(
     (space, inertia): (Space, f64),
     size: Size,
@@ -190,7 +184,6 @@ pub fn run_while(world: &mut World, most: usize, mut goes_on: impl FnMut(&World)
 
 /// Deterministic numbers in [0, 1): the fractional parts of multiples of the golden ratio, which
 /// fill the interval evenly however many are taken.
-#[must_use]
 pub fn phase(k: usize) -> f64 {
     (k as f64 * 0.618_033_988_749_894_9).fract()
 }

@@ -80,26 +80,22 @@ impl Material {
     }
 
     /// A solid sphere of it.
-    #[must_use]
     pub fn sphere(&self, radius: f64) -> Sphere {
         let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
         Sphere { radius, mass: self.density * volume }
     }
 
     /// E* (Pa) of two bodies of it.
-    #[must_use]
     pub fn modulus_of_two(&self) -> f64 {
         0.5 * self.modulus_at_rigid()
     }
 
     /// E* (Pa) of one body of it against a rigid one.
-    #[must_use]
     pub fn modulus_at_rigid(&self) -> f64 {
         self.young_modulus / (1.0 - self.poisson_ratio * self.poisson_ratio)
     }
 
     /// The Hertz–Mindlin law for spheres of it and a rigid wall, damped to `restitution`.
-    #[must_use]
     pub fn hertz_mindlin(&self, restitution: f64, friction: f64) -> Box<dyn ContactStage> {
         let mut values = self.hertz(friction, ("restitution", restitution), 1.0).to_vec();
         values.extend([("wall_restitution", restitution), ("intruder_restitution", restitution)]);
@@ -107,13 +103,11 @@ impl Material {
     }
 
     /// The viscoelastic law for spheres of it and a rigid wall.
-    #[must_use]
     pub fn hertz_mindlin_viscous(&self, viscous_time: f64, friction: f64) -> Box<dyn ContactStage> {
         stage("hertz-mindlin-viscous", &self.hertz(friction, ("viscous_time", viscous_time), 0.0))
     }
 
     /// The effect `name` on a Hertz law for grains of it, with one parameter of its own.
-    #[must_use]
     pub fn effect(&self, name: &str, own: (&'static str, f64)) -> Box<dyn ContactStage> {
         let mut values = vec![own];
         values.extend(
@@ -150,13 +144,11 @@ impl Material {
 
 /// How long (s) two bodies of reduced mass m* (kg), radius R* (m) and modulus E* (Pa) touch that approach
 /// with `speed` (m/s): 2 ∫ dx/√(1 − x^{5/2}) times the largest overlap over the speed.
-#[must_use]
 pub fn hertz_time(mass_eff: f64, radius_eff: f64, modulus: f64, speed: f64) -> f64 {
     hertz_overlap(mass_eff, radius_eff, modulus, speed) / speed * 2.943_275_3
 }
 
 /// Their largest overlap (m).
-#[must_use]
 pub fn hertz_overlap(mass_eff: f64, radius_eff: f64, modulus: f64, speed: f64) -> f64 {
     let swing = 15.0 / 16.0 * mass_eff * speed * speed / (modulus * radius_eff.sqrt());
     libm::pow(swing, 0.4)
@@ -166,7 +158,6 @@ pub fn hertz_overlap(mass_eff: f64, radius_eff: f64, modulus: f64, speed: f64) -
 ///
 /// # Panics
 /// If it does not come back within a million steps.
-#[must_use]
 pub fn collide(
     (sphere, motion): (Sphere, Motion),
     obstacle: Obstacle,

@@ -20,23 +20,14 @@ use crate::stability;
 
 /// Why a model that reads well cannot be built.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum BuildError {
-    /// `time_step = "auto"` with a law that has no collision time.
     #[error("the law `{law}` has no collision time of its own: give the time step in seconds")]
-    NoTimeStep {
-        /// Name of the law.
-        law: &'static str,
-    },
-    /// More grains than an index holds.
+    NoTimeStep { law: &'static str },
     #[error("{count} grains are more than the {} this version can number", u32::MAX)]
-    TooManyGrains {
-        /// How many.
-        count: u64,
-    },
-    /// Without gravity nothing settles.
+    TooManyGrains { count: u64 },
     #[error("a bed that settles needs gravity: give medium.gravity, or a bed from a table")]
     NoGravity,
-    /// The drawn start lies too near to a side.
     #[error("an intruder that starts at x = {x} m touches a side of the container, {width} m wide")]
     StartTouchesSide {
         /// (m).
@@ -44,7 +35,6 @@ pub enum BuildError {
         /// (m).
         width: f64,
     },
-    /// The start lies too near to the side of a cylinder.
     #[error(
         "an intruder that starts at x = {x} m, y = {y} m touches the container, {diameter} m across"
     )]
@@ -56,7 +46,6 @@ pub enum BuildError {
         /// (m).
         diameter: f64,
     },
-    /// The start lies too near to the front or the back.
     #[error("an intruder that starts at y = {y} m touches the container, {depth} m deep")]
     StartTouchesFront {
         /// (m).
@@ -68,7 +57,6 @@ pub enum BuildError {
 
 impl GrainModel<'_> {
     /// The container.
-    #[must_use]
     pub fn container(&self) -> Container {
         let of_file = &self.medium.container;
         let plain = of_file.without_layers();
@@ -100,7 +88,6 @@ impl GrainModel<'_> {
     }
 
     /// The contact law and the effects.
-    #[must_use]
     pub fn stages(&self) -> Vec<Box<dyn ContactStage>> {
         std::iter::once(&self.medium.contact_law)
             .chain(&self.medium.effects)
@@ -173,7 +160,6 @@ impl GrainModel<'_> {
     }
 
     /// The bed that a table of grains describes; none for one that has to settle.
-    #[must_use]
     pub fn read_bed(&self) -> Option<RestingBed> {
         let BedSource::Csv(csv) = &self.medium.bed.source else { return None };
         let grains: Vec<Grain> = (0..)
@@ -191,7 +177,6 @@ impl GrainModel<'_> {
     }
 
     /// `resting` in the container under the laws and the forces on grains of the run, ready for the intruder.
-    #[must_use]
     pub fn bed(&self, resting: &RestingBed) -> GrainBed {
         let forces = self.medium.grain_forces.iter();
         GrainBed::new(resting, self.container(), self.gravity(), self.stages(), self.n_bodies())
@@ -219,7 +204,6 @@ impl GrainModel<'_> {
     }
 
     /// Where the centre of the intruder starts (m).
-    #[must_use]
     pub fn start_x(&self, condition: &Condition) -> f64 {
         match condition.x {
             StartX::At(x) => x,
@@ -239,7 +223,6 @@ impl GrainForceChoice {
     }
 
     /// Whether it is that of a fluid, which acts on the intruder too.
-    #[must_use]
     pub fn is_of_a_fluid(&self) -> bool {
         self.build().surrounding(1.0).displaced_mass > 0.0
     }

@@ -63,9 +63,6 @@ pub enum Change {
 impl GrainModel<'_> {
     /// The model with `changes`, in their order, read and checked anew; what it was read from is not looked at
     /// again.
-    ///
-    /// # Errors
-    /// If that is no model.
     pub fn with(&self, changes: &[Change]) -> Result<Model, ConfigError> {
         let mut sources = Sources::default();
         let id = sources.add(format!("a change of {}", self.model.run.name), "");

@@ -54,13 +54,11 @@ impl Sources {
     }
 
     /// The whole of a text.
-    #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
         &self.texts[source.0].text
     }
 
     /// The bytes `part` of the string `value` that stands at `span`; all of it where escapes move them.
-    #[must_use]
     pub fn within(&self, span: Option<Span>, value: &str, part: Range<usize>) -> Option<Span> {
         let span = span?;
         let written = self.text(span.source).get(span.start..span.end).unwrap_or_default();
@@ -80,7 +78,6 @@ impl Sources {
     }
 
     /// What stands at `span`, shortened for use inside a message.
-    #[must_use]
     pub fn quote(&self, span: Span) -> String {
         shorten(self.text(span.source).get(span.start..span.end).unwrap_or_default())
     }
@@ -121,7 +118,6 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error without a place yet.
-    #[must_use]
     pub fn error(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -133,7 +129,6 @@ impl Diagnostic {
     }
 
     /// A warning without a place yet.
-    #[must_use]
     pub fn warning(message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(message) }
     }
@@ -164,7 +159,6 @@ impl Diagnostic {
     }
 
     /// The message as shown to the user, with file, line, column and the lines it is about.
-    #[must_use]
     pub fn render(&self, sources: &Sources, color: Color) -> String {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
@@ -188,7 +182,6 @@ impl Diagnostic {
 
     /// The message without the lines that it is about: a headline, a line for each place with what
     /// stands there, the help. Places in the first text are given without its name.
-    #[must_use]
     pub fn brief(&self, sources: &Sources) -> String {
         let level = match self.severity {
             Severity::Error => "error",
@@ -251,7 +244,6 @@ impl Diagnostic {
 }
 
 /// Messages one after another as shown to the user.
-#[must_use]
 pub fn render_all(diagnostics: &[Diagnostic], sources: &Sources, color: Color) -> String {
     let mut text = String::new();
     for diagnostic in diagnostics {
@@ -314,7 +306,6 @@ fn floor(text: &str, at: usize) -> usize {
 }
 
 /// `text` without anything that would move a terminal's cursor or colour it; line breaks stay.
-#[must_use]
 pub fn printable(text: &str) -> String {
     let hidden = |c: char| {
         (c.is_control() && c != '\n')
@@ -324,7 +315,6 @@ pub fn printable(text: &str) -> String {
 }
 
 /// `text` on one line and of bounded length, for use inside a message.
-#[must_use]
 pub fn shorten(text: &str) -> String {
     let line = text.replace(['\n', '\r'], " ");
     match line.char_indices().nth(60) {
@@ -334,7 +324,6 @@ pub fn shorten(text: &str) -> String {
 }
 
 /// The spelling in `known` nearest to `found`, if one is near.
-#[must_use]
 pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if found.len() > 80 {
         return None;

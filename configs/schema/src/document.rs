@@ -36,7 +36,6 @@ pub enum Value {
 
 impl Value {
     /// What kind it is, with its article.
-    #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Text(_) => "a string",
@@ -70,7 +69,6 @@ pub struct Entry {
 
 impl Table {
     /// Whether there is anything called `key` in it.
-    #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.get(key).is_some()
     }
@@ -131,7 +129,6 @@ impl Table {
     }
 
     /// The line of `key`.
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }

@@ -38,62 +38,27 @@ pub struct AddedEffect {
 
 /// Why a text cannot be edited.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum EditError {
-    /// It is no TOML.
     #[error("the model is not valid TOML: {0}")]
     Toml(String),
-    /// There is no such effect.
     #[error("there is no effect `{name}` for a {medium} medium{}; there are: {}", hint(near.as_deref()), known.join(", "))]
     UnknownEffect {
-        /// What was asked for.
         name: String,
-        /// `resistive-force` or `grains`.
         medium: &'static str,
-        /// The nearest name.
         near: Option<String>,
-        /// What there is.
         known: Vec<&'static str>,
     },
-    /// The effect is of the other medium.
     #[error("`{name}` acts in a {its} medium, and this model has a {medium} one")]
-    OtherMedium {
-        /// The effect.
-        name: String,
-        /// Its medium.
-        its: &'static str,
-        /// The model's.
-        medium: &'static str,
-    },
-    /// The model has it.
+    OtherMedium { name: String, its: &'static str, medium: &'static str },
     #[error("the model has the effect `{name}` already")]
-    Twice {
-        /// The effect.
-        name: String,
-    },
-    /// The effect has no such parameter.
+    Twice { name: String },
     #[error("`{effect}` has no parameter `{key}`{}; it has: {}", hint(near.as_deref()), known.join(", "))]
-    UnknownKey {
-        /// The effect.
-        effect: String,
-        /// What was given.
-        key: String,
-        /// The nearest key.
-        near: Option<String>,
-        /// What there is.
-        known: Vec<&'static str>,
-    },
-    /// A candidate is to become an effect, and nothing says how strong.
+    UnknownKey { effect: String, key: String, near: Option<String>, known: Vec<&'static str> },
     #[error("`{name}` needs an amplitude, a number in SI: q=0.4")]
-    NoAmplitude {
-        /// The candidate.
-        name: String,
-    },
-    /// The model has no such number.
+    NoAmplitude { name: String },
     #[error("the model has no number `{path}` to give a fitted value")]
-    UnknownNumber {
-        /// Its path.
-        path: String,
-    },
+    UnknownNumber { path: String },
 }
 
 fn hint(near: Option<&str>) -> String {

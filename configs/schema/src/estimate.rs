@@ -41,7 +41,6 @@ pub struct Estimate {
 
 impl Estimate {
     /// The estimate for `model`.
-    #[must_use]
     pub fn of(model: GrainModel<'_>) -> Self {
         let n_grains = model.n_grains();
         // At most `limits::STEPS`, so the cast is exact.
@@ -64,7 +63,6 @@ impl Estimate {
 
 /// Memory that this process may still take (byte), where the system says so: what is free, or what
 /// the control group leaves if that is less.
-#[must_use]
 pub fn available_memory_bytes() -> Option<u64> {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let free = read("/proc/meminfo").and_then(|text| {

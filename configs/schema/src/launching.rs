@@ -135,7 +135,6 @@ impl GrainModel<'_> {
     }
 
     /// Where the intruder starts along the depth (m): in the middle, unless the file says otherwise.
-    #[must_use]
     pub(crate) fn start_y(&self) -> f64 {
         self.medium.start.y.unwrap_or(0.5 * self.medium.container.depth)
     }

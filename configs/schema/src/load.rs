@@ -36,7 +36,6 @@ pub enum ModelSource {
 impl ModelSource {
     /// What a MODEL argument means: an existing file, else the name of a shipped model, else a
     /// file that [`Model::load`] will not find.
-    #[must_use]
     pub fn from_argument(argument: impl AsRef<Path>) -> Self {
         let path = argument.as_ref();
         if path.exists() {
@@ -49,18 +48,12 @@ impl ModelSource {
     }
 
     /// The same model as a text, read once.
-    ///
-    /// # Errors
-    /// If its file cannot be read.
     pub fn into_text(self) -> Result<Self, ConfigError> {
         let (name, text, folder) = self.open()?;
         Ok(Self::Text { name, text, folder })
     }
 
     /// Name for messages, text, and the folder that relative paths start from.
-    ///
-    /// # Errors
-    /// If its file cannot be read.
     pub fn open(self) -> Result<(String, String, PathBuf), ConfigError> {
         match self {
             Self::Shipped(shipped) => {
@@ -121,7 +114,6 @@ pub struct Loaded {
 
 impl Loaded {
     /// All warnings as shown to the user.
-    #[must_use]
     pub fn render_warnings(&self, color: Color) -> String {
         render_all(&self.warnings, &self.sources, color)
     }
@@ -129,28 +121,16 @@ impl Loaded {
 
 /// Why there is no model.
 #[derive(Clone, Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum ConfigError {
-    /// The file cannot be read at all.
     #[error("error: {}: {}", printable(name), printable(reason))]
-    Unreadable {
-        /// The file.
-        name: String,
-        /// Why, and what to do.
-        reason: String,
-    },
-    /// What it says is not a model.
+    Unreadable { name: String, reason: String },
     #[error("{}", render_all(diagnostics, sources, Color::Off))]
-    Invalid {
-        /// Every error, and the warnings.
-        diagnostics: Vec<Diagnostic>,
-        /// The texts that they point into.
-        sources: Sources,
-    },
+    Invalid { diagnostics: Vec<Diagnostic>, sources: Sources },
 }
 
 impl ConfigError {
     /// The error as shown to the user, ending in a line break.
-    #[must_use]
     pub fn render(&self, color: Color) -> String {
         match self {
             Self::Unreadable { .. } => format!("{self}\n"),

@@ -10,37 +10,20 @@ use crate::limits;
 
 /// Why a file is not read.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum PathError {
-    /// There is no such file, or it cannot be opened.
     #[error("`{path}`: {}", in_words(source))]
-    Io {
-        /// The file as named.
-        path: String,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// `~` is not expanded.
+    Io { path: String, source: io::Error },
     #[error("`{0}`: ~ is not expanded; write a path relative to this file")]
     Home(String),
-    /// It lies outside of the project and of the allowed folders.
     #[error("`{0}` lies outside of the model's project; --allow-path DIR allows its folder")]
     Outside(String),
-    /// It lies outside of the folder of the file that names it.
     #[error("`{0}` lies outside of the folder of this file")]
     OutsideFolder(String),
-    /// A folder, device, pipe or socket.
     #[error("`{0}` is not a regular file")]
     NotRegular(String),
-    /// It is too large.
     #[error("`{path}` has {size} bytes; at most {limit} are read")]
-    TooLarge {
-        /// The file.
-        path: String,
-        /// Its size.
-        size: u64,
-        /// What is accepted.
-        limit: u64,
-    },
+    TooLarge { path: String, size: u64, limit: u64 },
 }
 
 /// The folder of the project that `folder` belongs to: the nearest one upward that holds `.git` or
@@ -96,9 +79,6 @@ fn canonical(named: &str, folder: &Path) -> Result<[PathBuf; 2], PathError> {
 }
 
 /// A regular file of any size, to be streamed; messages call it `named`.
-///
-/// # Errors
-/// When it is anything else.
 pub fn open_regular(path: &Path, named: &str) -> Result<File, PathError> {
     let io = |source| PathError::Io { path: named.to_owned(), source };
     // Asked before opening: opening a pipe would wait for its writer.
@@ -109,9 +89,6 @@ pub fn open_regular(path: &Path, named: &str) -> Result<File, PathError> {
 }
 
 /// The content of a regular file of at most `limit` bytes; messages call it `named`.
-///
-/// # Errors
-/// When it is anything else.
 pub fn read_bounded(path: &Path, named: &str, limit: u64) -> Result<Vec<u8>, PathError> {
     let io = |source| PathError::Io { path: named.to_owned(), source };
     let file = open_regular(path, named)?;

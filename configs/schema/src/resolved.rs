@@ -162,7 +162,6 @@ impl Resolved {
 }
 
 /// `text` as a TOML string.
-#[must_use]
 pub fn quoted(text: &str) -> String {
     TomlValue::from(text).to_string().trim().to_owned()
 }

@@ -111,7 +111,6 @@ pub static SHIPPED: &[Shipped] = &[
 ];
 
 /// The one called `name`, with or without `.toml`.
-#[must_use]
 pub fn find(name: &str) -> Option<&'static Shipped> {
     let name = name.strip_suffix(".toml").unwrap_or(name);
     SHIPPED.iter().find(|shipped| shipped.name == name)

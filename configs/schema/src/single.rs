@@ -9,7 +9,6 @@ use crate::model::{BedSource, Condition, CsvBed, Model};
 
 impl Model {
     /// The resolved model that reads its table of grains, if it has one, from the file `table`.
-    #[must_use]
     pub fn toml_with_table(&self, table: &str) -> String {
         self.edited(|document| {
             if self.csv().is_some() {
@@ -19,7 +18,6 @@ impl Model {
     }
 
     /// The table of grains that its bed is read from; none if the bed settles.
-    #[must_use]
     pub fn csv(&self) -> Option<&CsvBed> {
         match &self.grains()?.medium.bed.source {
             BedSource::Csv(csv) => Some(csv),

@@ -69,7 +69,6 @@ impl Decisive {
 
 impl Times {
     /// The automatic step (s) and what decides it; `None` without a collision time.
-    #[must_use]
     pub fn step(&self) -> Option<(f64, Decisive)> {
         let collision = (self.collision? / STEPS_PER_COLLISION, Decisive::Collision);
         let damping = self.damping.map(|time| (time / STEPS_PER_DAMPING_TIME, Decisive::Damping));
@@ -204,7 +203,6 @@ impl Scene {
 /// Collisions are as fast as the fastest impact, or as a fall through the height of the bed. The drag of a
 /// layer that absorbs is damping too; in a corner that of three layers adds up, which a step that is a
 /// quarter of one layer's time still bears. So are forces that brake single grains.
-#[must_use]
 pub fn times(model: GrainModel<'_>) -> Times {
     let scene = Scene::of_run(model);
     let mut times = scene.times();
@@ -221,14 +219,12 @@ pub fn times(model: GrainModel<'_>) -> Times {
 }
 
 /// The times while the bed settles: the grains fall through about its height.
-#[must_use]
 pub(crate) fn preparation_times(model: GrainModel<'_>) -> Times {
     Scene::of_preparation(model, fall_speed(model)).times()
 }
 
 /// The step of the run, its factor included (s); `None` when it is automatic and the law has no
 /// collision time.
-#[must_use]
 pub fn time_step(model: GrainModel<'_>) -> Option<f64> {
     let step = match model.medium.stepping.time_step {
         TimeStep::Fixed(step) => step,
@@ -252,7 +248,6 @@ pub struct PreparationSteps {
 /// twice that of a run in which everything is as fast as the fall; then that of a run at the speed
 /// √(g d), which no grain exceeds that drops by half its diameter: contacts under a Hertz law
 /// are the slower the less they are compressed.
-#[must_use]
 pub(crate) fn preparation_steps(model: GrainModel<'_>) -> Option<PreparationSteps> {
     let BedSource::Settle(settle) = &model.medium.bed.source else {
         return None;

@@ -37,7 +37,6 @@ pub static GRAIN_FORCES: &[&GrainForceEntry] =
     &[&pore_air::ENTRY, &fluid::ENTRY, &side_wall::ENTRY];
 
 /// The force called `name`.
-#[must_use]
 pub fn find_grain_force(name: &str) -> Option<&'static GrainForceEntry> {
     GRAIN_FORCES.iter().find(|entry| entry.name == name).copied()
 }

@@ -31,24 +31,16 @@ const STAND_IN: &str = "two-term-vector";
 
 /// Why there is no baseline.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum BaselineError {
-    /// The force law that stands in does not read the set.
     #[error(transparent)]
     Forward(#[from] ForwardError),
-    /// It cannot be fitted to the runs.
     #[error("the runs of the model are not like an impact: {0}")]
     FitProblem(#[from] FitError),
-    /// It does not load; a mistake of ours.
     #[error(transparent)]
     Config(#[from] configs::ConfigError),
-    /// Too few runs ended.
     #[error("condition {condition}: only {found} impacts finished; at least two are needed")]
-    TooFew {
-        /// Id of the condition.
-        condition: String,
-        /// How many there are.
-        found: usize,
-    },
+    TooFew { condition: String, found: usize },
 }
 
 /// A force law near to a bed.

@@ -63,13 +63,11 @@ impl BedCandidate {
     }
 
     /// Whether it changes what every bed has, and is no effect of a registry.
-    #[must_use]
     pub fn is_change(&self) -> bool {
         matches!(self.act, Act::Change { .. })
     }
 
     /// The reason why it is not a candidate for `model`; `None` for a candidate.
-    #[must_use]
     pub fn lacks(&self, model: GrainModel<'_>) -> Option<&'static str> {
         let medium = model.medium;
         match &self.act {
@@ -84,7 +82,6 @@ impl BedCandidate {
     }
 
     /// What it changes in `model` at the amplitude `q`; nothing at zero.
-    #[must_use]
     pub fn change(&self, model: GrainModel<'_>, q: f64) -> Variation {
         match &self.act {
             _ if q == 0.0 => Variation::default(),

@@ -30,78 +30,34 @@ const EXPECTED: f64 = 0.5;
 
 /// Why a model of grains cannot stand before a set.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum BedModelError {
-    /// It is of the other kind.
     #[error("`{model}` has no bed of grains")]
-    NoGrains {
-        /// Name of the model.
-        model: String,
-    },
-    /// Several beds, of which a model is one.
+    NoGrains { model: String },
     #[error(
         "the set has {beds} beds, and `{model}` is one; make a set of the conditions of each, with a model of each"
     )]
-    SeveralBeds {
-        /// Name of the model.
-        model: String,
-        /// How many.
-        beds: usize,
-    },
-    /// Curves over time, which beds do not answer.
+    SeveralBeds { model: String, beds: usize },
     #[error("`{model}` is a bed of grains; {what} are compared with resistive models alone")]
-    OverTime {
-        /// Name of the model.
-        model: String,
-        /// What the set measured.
-        what: &'static str,
-    },
-    /// Pushes before a model of impacts, or the other way round.
+    OverTime { model: String, what: &'static str },
     #[error("the set holds {set_holds}, and `{model}` has [{table}]; it needs [{wanted}]")]
-    Start {
-        /// Name of the model.
-        model: String,
-        /// What the set measured.
-        set_holds: &'static str,
-        /// The table of the model.
-        table: &'static str,
-        /// The one that it needs.
-        wanted: &'static str,
-    },
-    /// A run that ends before its push.
+    Start { model: String, set_holds: &'static str, table: &'static str, wanted: &'static str },
     #[error(
         "condition {condition}: a push of {depth} m takes {wanted:.3} s, and `{model}` runs for {duration} s; write a longer \
          [run] duration, or a faster [intrusion] speed"
     )]
     Short {
-        /// Id of the condition.
         condition: String,
         /// How deep it goes (m).
         depth: f64,
-        /// How long that takes (s).
         wanted: f64,
-        /// Name of the model.
         model: String,
-        /// How long it runs (s).
         duration: f64,
     },
-    /// Discs before a set in space, or the other way round.
     #[error("`{model}` is a bed in {model_space}, and the set is one in {set_space}")]
-    Geometry {
-        /// Name of the model.
-        model: String,
-        /// `2d` or `3d`.
-        model_space: &'static str,
-        /// `2d` or `3d`.
-        set_space: &'static str,
-    },
-    /// A condition, or a changed model, that is not a model.
+    Geometry { model: String, model_space: &'static str, set_space: &'static str },
     #[error("condition {condition}: {source}")]
-    Config {
-        /// Id of the condition.
-        condition: String,
-        /// What is wrong with it.
-        source: ConfigError,
-    },
+    Config { condition: String, source: ConfigError },
 }
 
 /// One draw of the disorder of beds: a bed, and where on it the intruder lands.
@@ -206,7 +162,6 @@ impl<'a> BedModel<'a> {
     }
 
     /// The model, as what it is.
-    #[must_use]
     pub fn grains(&self) -> GrainModel<'a> {
         GrainModel { model: self.model, medium: self.medium }
     }
@@ -214,7 +169,6 @@ impl<'a> BedModel<'a> {
     /// `n` draws for each of so many `conditions`, on the beds from number `first` on. Those of one
     /// condition are on beds of their own, each. Conditions share beds, not places, as long as there are any
     /// that are fresh: what falls on the same grains misses by the same.
-    #[must_use]
     pub fn draws(&self, first: usize, n: usize, conditions: usize) -> Vec<Vec<Draw>> {
         let beds = self.n_beds(n, conditions);
         let draw = |at: usize| Draw {
@@ -225,7 +179,6 @@ impl<'a> BedModel<'a> {
     }
 
     /// How many beds `n` draws for each of so many `conditions` are on.
-    #[must_use]
     pub(crate) fn n_beds(&self, n: usize, conditions: usize) -> usize {
         (n * conditions).div_ceil(self.n_places).clamp(n, MOST_BEDS * n)
     }
@@ -242,9 +195,6 @@ impl<'a> BedModel<'a> {
     }
 
     /// The impact of condition `condition` of the set at `draw`, with `variation`.
-    ///
-    /// # Errors
-    /// If that is no model.
     pub fn job(
         &self,
         condition: usize,
@@ -300,9 +250,6 @@ impl<'a> BedModel<'a> {
     }
 
     /// The model with `variation`, complete and in SI.
-    ///
-    /// # Errors
-    /// If that is no model.
     pub fn proposal(&self, variation: &Variation) -> Result<String, ConfigError> {
         let changes = [&variation.before[..], &variation.during[..]].concat();
         Ok(self.grains().with(&changes)?.resolved_toml().to_owned())

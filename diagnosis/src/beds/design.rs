@@ -13,7 +13,6 @@ const GENERATORS: [&str; 6] = [
 
 /// For `factors` effects, which of them are on in each run: every run is followed by its mirror, in
 /// which what was on is off. None for no effects, or more than 23.
-#[must_use]
 pub(super) fn folded(factors: usize) -> Vec<Vec<bool>> {
     let generator = GENERATORS.iter().find(|row| factors > 0 && row.len() >= factors);
     let Some(generator) = generator.map(|row| row.as_bytes()) else { return Vec::new() };

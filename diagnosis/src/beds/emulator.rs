@@ -208,7 +208,6 @@ impl BedForward {
 
     /// Scatter of the runs of the model from bed to bed: relative standard deviations of coefficients and
     /// of the force along the path, and of every scalar, condition by condition.
-    #[must_use]
     pub fn scatter(&self, set: &MeasurementSet) -> Value {
         let noise = &self.baseline.fitted.noise;
         let conditions = self.baseline.observed.fit.iter().map(|&at| {
@@ -233,14 +232,12 @@ impl BedForward {
 
     /// Standard errors of the means of the runs of the model, by kind of number: no error below it says
     /// anything of the model.
-    #[must_use]
     pub fn noise_floor(&self) -> Value {
         let observed = &self.baseline.observed;
         noise_floor(observed, &observed.fit).to_json()
     }
 
     /// The names of those of `effects` that are candidates of the simulation.
-    #[must_use]
     pub(crate) fn of_the_bed(&self, effects: &[(usize, f64)]) -> Vec<&'static str> {
         let bed_candidates = effects.iter().filter_map(|&(index, _)| self.bed_candidate(index));
         bed_candidates.map(|at| self.screened[at].bed_candidate.id).collect()

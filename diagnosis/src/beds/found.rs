@@ -63,9 +63,6 @@ impl BedDiagnosis {
     }
 
     /// The diagnosis as one JSON object, with what was learned of the beds.
-    ///
-    /// # Errors
-    /// Never for a diagnosis that this crate made.
     pub fn to_json(&self, bed_model: &BedModel<'_>) -> serde_json::Result<Value> {
         let mut object = self.diagnosis.to_json()?;
         object["bed"] = json!({

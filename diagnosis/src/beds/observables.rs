@@ -8,7 +8,6 @@ use crate::forward::observable::{Layout, Observable};
 
 /// Depth and range (m) at `time` (s), as `set` counts depths: before contact those of the fall under `condition`, behind the
 /// end the last ones.
-#[must_use]
 pub fn at(record: &Record, time: f64, condition: &Condition, set: &MeasurementSet) -> (f64, f64) {
     let at_contact = depth_at_contact(record, set);
     if time < 0.0 {
@@ -21,7 +20,6 @@ pub fn at(record: &Record, time: f64, condition: &Condition, set: &MeasurementSe
 }
 
 /// Depth (m) at first contact, which is with grains above the mean surface.
-#[must_use]
 pub fn depth_at_contact(record: &Record, set: &MeasurementSet) -> f64 {
     match set.surface {
         SurfaceDefinition::FirstContact => 0.0,
@@ -30,7 +28,6 @@ pub fn depth_at_contact(record: &Record, set: &MeasurementSet) -> f64 {
 }
 
 /// The observables that `layout` asks for, as `set` defines them.
-#[must_use]
 pub fn observables(
     record: &Record,
     layout: &Layout,

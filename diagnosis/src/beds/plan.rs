@@ -289,25 +289,21 @@ impl Plan {
     }
 
     /// Estimated time (s).
-    #[must_use]
     pub fn seconds(&self) -> f64 {
         self.stages.iter().map(|stage| stage.seconds).sum()
     }
 
     /// Impacts in all.
-    #[must_use]
     pub fn impacts(&self) -> usize {
         self.stages.iter().map(|stage| stage.impacts).sum()
     }
 
     /// Whether it is done within the budget, as far as is known.
-    #[must_use]
     pub fn fits(&self) -> bool {
         self.wish.budget.is_none_or(|budget| self.seconds() <= budget)
     }
 
     /// As JSON; times are estimates of this machine.
-    #[must_use]
     pub fn to_json(&self, bed_model: &BedModel<'_>) -> Value {
         let id = |at: &usize| bed_model.set.conditions[*at].id.clone();
         let stages = self.stages.iter().map(|stage| {
@@ -405,7 +401,6 @@ fn spread_over(conditions: &[usize], count: usize) -> Vec<usize> {
 }
 
 /// What there is to say where the budget of `plan` does not pay for it.
-#[must_use]
 pub fn unaffordable(plan: &Plan) -> Diagnosis {
     let minutes = |seconds: f64| (seconds / 60.0).ceil();
     let why = format!(

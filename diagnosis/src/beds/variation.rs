@@ -13,13 +13,11 @@ pub struct Variation {
 
 impl Variation {
     /// `change` in the bed and in the impact.
-    #[must_use]
     pub fn before(change: Change) -> Self {
         Self { before: vec![change], during: Vec::new() }
     }
 
     /// `change` in the impact alone.
-    #[must_use]
     pub fn during(change: Change) -> Self {
         Self { before: Vec::new(), during: vec![change] }
     }

@@ -47,9 +47,6 @@ const MOST_PACKING: f64 = 0.2;
 pub const COMPARED: usize = 6;
 
 /// `bed_model` as it is, under all conditions of the set that have something to compare.
-///
-/// # Errors
-/// If the impacts cannot be run, or say nothing.
 pub fn bed_forward(
     bed_model: &BedModel<'_>,
     observed: &Observed,
@@ -82,9 +79,6 @@ type Fresh<'a> = (&'a [Vec<Draw>], &'a [Option<Record>]);
 
 /// Diagnoses `bed_model` by the runs of `plan`; of a plan that does not fit its budget
 /// [`unaffordable`](super::unaffordable) says what there is to say. First the model is prepared to what the set states of its bed.
-///
-/// # Errors
-/// If the impacts cannot be run, or say nothing.
 pub fn diagnose_bed(
     bed_model: &BedModel<'_>,
     measured: &Observed,

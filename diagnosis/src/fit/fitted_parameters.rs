@@ -8,7 +8,6 @@ use crate::rounding::rounded;
 
 /// Value, standard error and unit of every free parameter of the model; no error of one that is held at the end of its
 /// range.
-#[must_use]
 pub fn parameters(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
     let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
     values

@@ -117,7 +117,6 @@ impl Fit {
     }
 
     /// Number of unknowns that are not held at a bound.
-    #[must_use]
     pub fn n_free(&self) -> usize {
         self.free.len()
     }
@@ -147,13 +146,11 @@ impl Fit {
     }
 
     /// Covariance of the unknowns that are not held at a bound.
-    #[must_use]
     pub(crate) fn free_covariance(&self) -> DMatrix<f64> {
         self.covariance.select_rows(&self.free).select_columns(&self.free)
     }
 
     /// Standard error of unknown `index`, parameters first; none when it is held at a bound, or nothing depends on it.
-    #[must_use]
     pub fn standard_error(&self, index: usize) -> Option<f64> {
         Some(self.covariance[(index, index)]).filter(|own| *own > 0.0).map(f64::sqrt)
     }
@@ -327,9 +324,6 @@ impl Data<'_> {
     }
 
     /// Whitened measured less predicted at `point`, condition after condition; then parameters with a prior likewise.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated there.
     pub fn residual(&self, point: &Point) -> Result<DVector<f64>, PredictError> {
         let of_condition = |(&condition, weight): (&usize, &Weight)| {
             let mean = &self.observed.conditions[condition].mean;
@@ -350,7 +344,6 @@ impl Data<'_> {
     }
 
     /// How many numbers were measured: rows of a residual, before those of priors.
-    #[must_use]
     pub fn measured(&self) -> usize {
         self.weights.iter().map(|weight| weight.shift.len()).sum()
     }

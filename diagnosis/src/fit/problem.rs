@@ -61,7 +61,6 @@ pub struct Fitted {
 
 impl Fitted {
     /// Twice the negative logarithm of the likelihood, with what priors and the scatter between conditions cost.
-    #[must_use]
     pub(crate) fn deviance(&self) -> f64 {
         self.fit.chi2 + self.cost_of_noise()
     }
@@ -79,45 +78,25 @@ impl Fitted {
 
 /// Why measurements cannot be compared with a model.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum FitError {
-    /// The model fails.
     #[error(transparent)]
     Predict(#[from] PredictError),
-    /// A prediction does not have the layout of its condition.
     #[error("condition `{id}`: the model predicts {found} numbers; {expected} were measured")]
-    Layout {
-        /// The condition.
-        id: String,
-        /// Length of the prediction.
-        found: usize,
-        /// Length of the layout.
-        expected: usize,
-    },
-    /// A formula that is no force.
+    Layout { id: String, found: usize, expected: usize },
     #[error("a formula of the missing force cannot be read: {0}")]
     Formula(String),
-    /// Neither repeats nor stated errors.
     #[error(
         "there are neither repeats nor stated errors: repeat at least one condition, or state `[noise]`"
     )]
     NoErrors,
-    /// Less is measured than is free.
     #[error("{measured} numbers were measured to fit {free} unknowns to")]
-    TooFew {
-        /// Numbers in conditions with the role `fit`.
-        measured: usize,
-        /// Free parameters and amplitudes.
-        free: usize,
-    },
-    /// The noise of a condition has no inverse.
+    TooFew { measured: usize, free: usize },
     #[error(
         "condition `{id}`: the errors of its numbers are not finite, or so large or small that they have no inverse; \
          compare its numbers and their errors with those of the other conditions"
     )]
-    Singular {
-        /// The condition.
-        id: String,
-    },
+    Singular { id: String },
 }
 
 impl FitProblem<'_> {
@@ -254,7 +233,6 @@ impl FitProblem<'_> {
     }
 
     /// The measurements under `weights`.
-    #[must_use]
     pub fn data<'a>(&'a self, weights: &'a [Weight]) -> Data<'a> {
         let conditions = &self.observed.fit;
         Data { forward: self.forward, observed: self.observed, conditions, weights }
@@ -275,9 +253,6 @@ impl FitProblem<'_> {
     }
 
     /// The weights of `conditions` under `noise`, along the paths at `point`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub fn weights(
         &self,
         point: &Point,

@@ -11,25 +11,21 @@ pub struct Grid {
 
 impl Grid {
     /// How many nodes there are.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.against() * (1 + usize::from(self.is_sideways))
     }
 
     /// How many of them are of the force against the motion.
-    #[must_use]
     pub fn against(&self) -> usize {
         self.axes.iter().map(Vec::len).product()
     }
 
     /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Node `index`: depth, speed, angle, diameter.
-    #[must_use]
     pub fn node(&self, index: usize) -> [f64; 4] {
         let mut rest = index % self.against();
         let mut node = [0.0; 4];
@@ -41,7 +37,6 @@ impl Grid {
     }
 
     /// The node in units of the extent of each axis, for distances.
-    #[must_use]
     pub fn scaled(&self, index: usize) -> Scaled {
         let node = self.node(index);
         let at = std::array::from_fn(|axis| {
@@ -60,7 +55,6 @@ impl Grid {
     }
 
     /// The nodes around `place` with their shares: a field there is the sum of its values times these.
-    #[must_use]
     pub(crate) fn shares_at(&self, place: [f64; 4]) -> [(usize, f64); 16] {
         let ends: [[(usize, f64); 2]; 4] =
             std::array::from_fn(|axis| shares(&self.axes[axis], place[axis]));
@@ -110,14 +104,12 @@ pub struct Field {
 impl Field {
     /// The force against the motion at a depth (m), a speed (m/s), an impact angle (rad) and a diameter (m), in units of
     /// ρ g A D.
-    #[must_use]
     pub fn at(&self, place: [f64; 4]) -> f64 {
         let shares = self.grid.shares_at(place);
         shares.into_iter().map(|(node, share)| share * self.values[node]).sum()
     }
 
     /// The force normal to the motion there, in the plane of motion, out of the bed where the body sinks; in the same units.
-    #[must_use]
     pub(crate) fn sideways_at(&self, place: [f64; 4]) -> f64 {
         self.grid.sideways_shares_at(place).map(|(node, share)| share * self.values[node]).sum()
     }

@@ -36,9 +36,6 @@ pub trait Forward: Sync {
     /// They must be smooth in everything that is asked for, down to the steps of derivatives: the end
     /// of an impact is interpolated, not taken from the nearest step. Times before contact are of the
     /// free flight, times after the stop have the resting point.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated with these values.
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError>;
 
     /// The model that this one adds something to. What follows is that of this model unless it says otherwise.
@@ -97,9 +94,6 @@ pub trait Forward: Sync {
 pub trait Passages: Sync {
     /// What the body of `condition` goes through in the bed on the run that `at` asks for, about `n` moments of it, and
     /// what it would meet there by each of `others`; of the first part of a chain.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated with these values.
     fn passage(
         &self,
         condition: usize,
@@ -289,14 +283,12 @@ impl Bound {
 
 impl Candidate {
     /// The end of its range at which amplitude `q` is held, if it is.
-    #[must_use]
     pub(crate) fn bound_at(&self, q: f64) -> Option<Bound> {
         Bound::at(q, self.min, self.max)
     }
 
     /// Least and greatest amplitude that an estimate `q` with standard error `se` allows, 95 %, within the range; `None`
     /// for an end that the range decides.
-    #[must_use]
     pub fn interval_95(&self, q: f64, se: Option<f64>) -> [Option<f64>; 2] {
         let Some(se) = se else {
             return match self.bound_at(q) {
@@ -311,7 +303,6 @@ impl Candidate {
 
     /// Whether amplitude `q` is outside of what one would expect, by more than two of its standard errors `se`; none
     /// count where none is known, as at a bound.
-    #[must_use]
     pub(crate) fn is_unusual(&self, q: f64, se: Option<f64>) -> bool {
         let margin = OUTSIDE * se.unwrap_or(0.0);
         self.usual.is_some_and(|[least, greatest]| q + margin < least || q - margin > greatest)
@@ -359,7 +350,6 @@ pub struct Scatter {
 
 impl Scatter {
     /// Whether this is the run of the mean bed.
-    #[must_use]
     pub fn is_still(&self) -> bool {
         let Self {
             coefficients,
@@ -394,7 +384,6 @@ impl Bend {
     pub(crate) const TERMS: usize = 5;
 
     /// The factor at these shares of depth and of speed, from 0 to 1; beyond, that of the end.
-    #[must_use]
     pub fn factor(&self, depth: f64, speed: f64) -> f64 {
         let [u, w] = [depth, speed].map(|share| 2.0 * share.clamp(0.0, 1.0) - 1.0);
         let curved = |x: f64| 2.0 * x * x - 1.0;
@@ -403,7 +392,6 @@ impl Bend {
     }
 
     /// Its derivative by the share of depth.
-    #[must_use]
     pub fn growth(&self, depth: f64, speed: f64) -> f64 {
         if !(0.0..1.0).contains(&depth) {
             return 0.0;

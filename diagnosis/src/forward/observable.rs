@@ -62,7 +62,6 @@ pub enum Observable {
 
 impl Layout {
     /// The kind of every entry.
-    #[must_use]
     pub fn kinds(&self) -> Vec<Observable> {
         let frames = self.times.len();
         let mut kinds = vec![Observable::Depth; frames];
@@ -89,13 +88,11 @@ impl Layout {
     }
 
     /// How many sizes of craters are compared, which force laws have none of.
-    #[must_use]
     pub fn craters(&self) -> usize {
         usize::from(self.crater_depth) + usize::from(self.rim_diameter)
     }
 
     /// The layout less the sizes of craters.
-    #[must_use]
     pub fn without_craters(&self) -> Self {
         Self { crater_depth: false, rim_diameter: false, ..self.clone() }
     }
@@ -110,7 +107,6 @@ impl Layout {
     }
 
     /// How many numbers a vector has.
-    #[must_use]
     pub fn len(&self) -> usize {
         let frames = self.times.len() * (1 + usize::from(self.along_x));
         let curve = self.curve.as_ref().map_or(0, |curve| curve.at.len());
@@ -118,7 +114,6 @@ impl Layout {
     }
 
     /// Whether nothing is compared.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -159,7 +154,6 @@ impl Observable {
     }
 
     /// The one with this key.
-    #[must_use]
     pub fn of_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|one| one.key() == key)
     }
@@ -221,7 +215,6 @@ impl Observable {
     }
 
     /// What of a curve of this kind of set is read; `None` for trajectories and scalars.
-    #[must_use]
     pub fn of_curve(kind: Kind) -> Option<Self> {
         match kind {
             Kind::Trajectory | Kind::Scalar => None,

@@ -23,16 +23,12 @@ pub struct Point {
 
 impl Point {
     /// Where the parameters of `forward` start, without effects.
-    #[must_use]
     pub fn start(forward: &dyn Forward) -> Self {
         let parameters = forward.parameters().iter().map(|parameter| parameter.start).collect();
         Self { parameters, effects: Vec::new() }
     }
 
     /// The run of the mean bed.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated there.
     pub fn predict(
         &self,
         forward: &dyn Forward,
@@ -75,7 +71,6 @@ pub struct Spread {
 
 impl Spread {
     /// With what the instrument states about speed, angle and level.
-    #[must_use]
     pub fn new(coefficient: f64, path: f64, instrument: &Instrument) -> Self {
         let speed = instrument.speed_sigma_rel.unwrap_or(0.0);
         let angle = instrument.angle_sigma_deg.map_or(0.0, f64::to_radians);
@@ -84,7 +79,6 @@ impl Spread {
     }
 
     /// The same with a clock that starts with some frame: it is off by a part of one, all parts alike. Repeats would tell.
-    #[must_use]
     pub(crate) fn of_one_run(coefficient: f64, path: f64, instrument: &Instrument) -> Self {
         let clock = instrument.rate.map_or(0.0, |rate| 1.0 / (f64::sqrt(12.0) * rate));
         Self { clock, ..Self::new(coefficient, path, instrument) }
@@ -218,7 +212,6 @@ impl Sensitivity {
     }
 
     /// Standard deviation of each input.
-    #[must_use]
     pub fn spread(&self, spread: &Spread) -> DVector<f64> {
         DVector::from_iterator(
             self.inputs.len(),
@@ -236,7 +229,6 @@ impl Sensitivity {
     }
 
     /// What the mean of runs differs by from the run of the mean bed, to second order in the scatter.
-    #[must_use]
     pub(crate) fn shift_of_mean(&self, spread: &Spread) -> DVector<f64> {
         0.5 * &self.curvature * self.spread(spread).map(|sd| sd * sd)
     }

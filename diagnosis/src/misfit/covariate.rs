@@ -54,7 +54,6 @@ const fn covariate(name: &'static str, heading: &'static str, unit: &'static str
 }
 
 /// The covariate called `name`.
-#[must_use]
 pub fn named(name: &str) -> Option<Covariate> {
     let of_conditions = OF_CONDITIONS.map(|(covariate, _)| covariate);
     let mut all = of_conditions.into_iter().chain([DEPTH, ORDER, PREVIOUS_RUN]);

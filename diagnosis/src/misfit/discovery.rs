@@ -2,7 +2,6 @@
 
 /// Which of the tests with these p-values are discoveries, of which on average no more than the share
 /// `rate` is false (Benjamini & Hochberg 1995, J. R. Stat. Soc. B 57, 289).
-#[must_use]
 pub(crate) fn discoveries(p: &[f64], rate: f64) -> Vec<bool> {
     let mut sorted = p.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -31,7 +31,6 @@ pub enum Unit {
 
 impl Unit {
     /// Of errors on a set of this kind.
-    #[must_use]
     pub fn of(kind: Kind) -> Self {
         match kind {
             Kind::Trajectory => Self::Position,

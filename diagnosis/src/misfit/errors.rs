@@ -22,9 +22,6 @@ pub struct Errors {
 
 impl Errors {
     /// Errors of `point` under `conditions` (indices in the set); `None` if there are none.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub fn at(
         problem: &FitProblem<'_>,
         point: &Point,
@@ -44,13 +41,11 @@ impl Errors {
     }
 
     /// Of one kind, in its own unit.
-    #[must_use]
     pub fn of(&self, kind: Observable) -> Option<f64> {
         self.by_kind.iter().find(|(other, _)| *other == kind).map(|(_, error)| *error)
     }
 
     /// As JSON, under the keys of the kinds.
-    #[must_use]
     pub fn to_json(&self) -> Value {
         let mut map: Map<String, Value> = self
             .by_kind

@@ -40,9 +40,6 @@ pub struct ForceErrors {
 
 impl ForceErrors {
     /// Of `fitted`; orders of runs are drawn with `seed`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub fn of(problem: &FitProblem<'_>, fitted: &Fitted, seed: u64) -> Result<Self, FitError> {
         let normals = Normal::all(problem, fitted)?;
         let chronology = Chronology::of(problem, fitted, &normals, seed);
@@ -67,7 +64,6 @@ impl ForceErrors {
     }
 
     /// Those parts of covariates of conditions and depths that are discoveries.
-    #[must_use]
     pub fn fails(&self) -> Vec<ForceError> {
         let of_runs = crate::misfit::covariate::ORDER.name;
         let fails = self.groups.iter().filter(|group| group.significant);
@@ -75,7 +71,6 @@ impl ForceErrors {
     }
 
     /// What the force error depends on, clearest first; then what [`ForceErrors::drifts`] says.
-    #[must_use]
     pub fn depends_on(&self) -> Vec<&'static str> {
         let mut fails = self.fails();
         let clarity = |fail: &ForceError| (fail.force_error / fail.se).abs();
@@ -92,7 +87,6 @@ impl ForceErrors {
 
     /// `order` where the force drifts from run to run, `previous_run` where a run resembles the one
     /// before it under the same condition; each at 1 % over both.
-    #[must_use]
     pub fn drifts(&self) -> Vec<&'static str> {
         chronology::beyond_chance(&self.trends)
     }

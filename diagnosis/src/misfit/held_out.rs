@@ -150,9 +150,6 @@ impl HeldOut {
 
 impl HeldOut {
     /// Of `before` and `after`.
-    ///
-    /// # Errors
-    /// If the model fails.
     pub fn of(problem: &FitProblem<'_>, before: &Fitted, after: &Fitted) -> Result<Self, FitError> {
         let conditions = match problem.observed.holdout.is_empty() {
             true => LeftOut::OneAtATime,
@@ -269,7 +266,6 @@ impl HeldOut {
 
     /// What keeps the errors from confirming what is proposed, if anything does: it has to predict what it has not seen
     /// better, errors weighed by their noise, and nothing less than the model without it does.
-    #[must_use]
     pub fn doubt(&self) -> Option<StrengthReason> {
         let worse = |one: &NotPredicted| one.by == Fails::After && !one.is_open;
         if self.not_predicted.iter().any(worse) {
@@ -282,7 +278,6 @@ impl HeldOut {
     }
 
     /// Whether the model without it misses by more than [`CLEAR`] times the noise; `None` where that is not known.
-    #[must_use]
     pub(crate) fn is_above_noise(&self) -> Option<bool> {
         let is_weighed = self.weighed.is_some_and(|weighed| weighed.before >= CLEAR);
         Some(is_weighed || self.before? >= CLEAR * self.noise_floor?)
@@ -290,31 +285,26 @@ impl HeldOut {
 
     /// Whether the model without it misses by more than [`CLEAR`] times what the right one would; `None` where that is not
     /// known.
-    #[must_use]
     pub(crate) fn is_above_expected(&self) -> Option<bool> {
         Some(!self.leaves_what_is_expected() && self.before? >= CLEAR * self.expected?)
     }
 
     /// Whether it is missed by that much with what is proposed, too; `None` where that is not known.
-    #[must_use]
     pub(crate) fn leaves_more_than_noise(&self) -> Option<bool> {
         Some(self.after? >= CLEAR * self.noise_floor?)
     }
 
     /// Whether what is proposed leaves no more than the noise and the uncertainty of its predictions.
-    #[must_use]
     pub(crate) fn leaves_what_is_expected(&self) -> bool {
         self.weighed.is_some_and(|weighed| weighed.after <= WITHIN)
     }
 
     /// Whether what is proposed leaves so much of what exceeds the noise that its form is in doubt.
-    #[must_use]
     pub(crate) fn leaves_a_part(&self) -> bool {
         self.explained.is_some_and(|share| share < NEARLY_ALL)
     }
 
     /// Whether what is proposed leaves more than noise, and a third of what exceeds the noise.
-    #[must_use]
     pub(crate) fn leaves_a_third(&self) -> bool {
         let leaves = self.explained.is_some_and(|share| share < 1.0 - MOST);
         leaves && self.leaves_more_than_noise() == Some(true)
@@ -322,7 +312,6 @@ impl HeldOut {
 
     /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too, or reduces
     /// a large error to the noise; `None` where no error is known.
-    #[must_use]
     pub(crate) fn is_nearer(&self) -> Option<bool> {
         let ratio = self.after? / self.before?;
         let in_most = self.ratio_at_most.is_none_or(|most| most <= NEARER);
@@ -341,7 +330,6 @@ impl HeldOut {
 
     /// Whether only a few conditions show what is proposed: it reduces a large error to the noise, but takes less than a quarter
     /// away in some choices of the conditions.
-    #[must_use]
     pub(crate) fn is_shown_by_few(&self) -> bool {
         self.ratio_at_most.is_some_and(|most| most > NEARER) && self.leaves_only_noise()
     }
@@ -352,7 +340,6 @@ impl HeldOut {
     }
 
     /// By what held-out conditions are missed without and with what is proposed; `None` where that is not known.
-    #[must_use]
     pub(crate) fn in_words(&self) -> Option<String> {
         let (before, after) = (self.in_noise(self.before)?, self.in_noise(self.after)?);
         let conditions = self.conditions.in_words();
@@ -362,7 +349,6 @@ impl HeldOut {
     }
 
     /// That held-out conditions are missed by too little for any name; `None` where they are missed by more.
-    #[must_use]
     pub(crate) fn below(&self) -> Option<String> {
         let before = self.in_noise(self.before)?;
         (self.is_above_noise() == Some(false)).then(|| {
@@ -375,7 +361,6 @@ impl HeldOut {
 
     /// The reason why the effects `names`, the first of which has the amplitude `q` with its standard error, are too small to
     /// be named by these errors; `None` for what is large enough, and where no error is known.
-    #[must_use]
     pub(crate) fn too_small(&self, names: &[String], q: f64, se: f64) -> Option<String> {
         let (first, name) = (names.first()?, names.join(" or "));
         let hides = match q.abs() > FITTED * se {
@@ -400,7 +385,6 @@ impl HeldOut {
     }
 
     /// Whether what is proposed leaves nothing of the error but noise, and takes half of it away at least.
-    #[must_use]
     pub(crate) fn is_within_noise(&self) -> bool {
         let errors = self.before.zip(self.after).zip(self.noise_floor);
         errors.is_some_and(|((before, after), floor)| {
@@ -410,7 +394,6 @@ impl HeldOut {
 
     /// Whether what is proposed takes two thirds of a clear error away at least, half of it in most choices of the
     /// conditions, and predicts better than without it.
-    #[must_use]
     pub(crate) fn takes_most(&self) -> bool {
         let most =
             self.before.zip(self.after).is_some_and(|(before, after)| after <= MOST * before);
@@ -421,7 +404,6 @@ impl HeldOut {
 
     /// Whether it predicts that worse, by more than chance excuses: means of few runs under few
     /// conditions have errors that hang together, so the density alone refutes some true effects.
-    #[must_use]
     pub(crate) fn refutes(&self) -> bool {
         self.log_density_gain < -REFUTED && self.is_no_nearer()
     }

@@ -35,9 +35,6 @@ const GRAINS: f64 = 4.0;
 
 /// Probability of a lack of fit at least as large, if `fitted` were true; `None` where as much is free
 /// as was measured, so that nothing is left to judge by.
-///
-/// # Errors
-/// If the model fails.
 pub fn lack_of_fit(
     problem: &FitProblem<'_>,
     fitted: &Fitted,

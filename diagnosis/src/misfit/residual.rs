@@ -28,7 +28,6 @@ pub struct Residual {
 
 impl Residual {
     /// Where along the path it was read: when (s), or how deep (m); `None` for numbers of the whole impact.
-    #[must_use]
     pub fn place(&self) -> Option<f64> {
         self.time.or(self.depth)
     }
@@ -48,7 +47,6 @@ pub struct Unpredicted {
 
 /// The held-out conditions that all of several models predict, each at its point, and the others: errors of models are
 /// compared over the same conditions.
-#[must_use]
 pub(crate) fn predictable(models: &[(FitProblem<'_>, &Point)]) -> (Vec<usize>, Vec<Unpredicted>) {
     let Some((first, _)) = models.first() else { return (Vec::new(), Vec::new()) };
     let mut unpredicted = Vec::new();
@@ -70,9 +68,6 @@ pub(crate) fn predictable(models: &[(FitProblem<'_>, &Point)]) -> (Vec<usize>, V
 /// All numbers of the conditions that were fitted to and of those of `holdout`, for the model at `point` under `noise`.
 ///
 /// The differences between two points are what an effect does once the parameters have compensated.
-///
-/// # Errors
-/// If the model fails.
 pub fn residuals(
     problem: &FitProblem<'_>,
     point: &Point,

@@ -132,13 +132,11 @@ impl Formula {
     }
 
     /// Its amplitude.
-    #[must_use]
     pub fn amplitude(&self) -> f64 {
         self.fitted.fit.point.effects.last().map_or(0.0, |(_, q)| *q)
     }
 
     /// The table of a candidate for a model file.
-    #[must_use]
     pub fn table(&self) -> String {
         let Self { force, kind, words, .. } = self;
         let millimetre = match uses_millimetres(force) {

@@ -60,7 +60,6 @@ pub struct Recommendation {
 
 impl Recommendation {
     /// Probability that the two are told apart by it, if one of them is there.
-    #[must_use]
     pub(crate) fn probability_separated(&self) -> f64 {
         let sd = 2.0 * self.expected_delta.sqrt();
         if sd > 0.0 { Normal::standard().cdf((self.expected_delta - SEPARATE) / sd) } else { 0.0 }

@@ -85,7 +85,6 @@ const ASSUMED: f64 = 0.05;
 
 impl Noise {
     /// What the set states: nothing is known about the run-to-run scatter.
-    #[must_use]
     pub fn stated() -> Self {
         let spread = Spread {
             coefficient: 0.0,
@@ -107,21 +106,18 @@ impl Noise {
     }
 
     /// For comparing where nothing is known.
-    #[must_use]
     pub fn assumed() -> Self {
         Self { source: NoiseSource::Assumed, ..Self::stated() }
     }
 
     /// Where readings have a stated error and nothing was repeated: coefficients scatter by 5 %, the
     /// force along the path by 12 %, as in common beds.
-    #[must_use]
     pub(crate) fn assumed_scatter(instrument: &Instrument) -> Self {
         let spread = Spread::of_one_run(0.05, 0.12, instrument);
         Self { source: NoiseSource::AssumedScatter, spread, ..Self::guess(instrument) }
     }
 
     /// A first guess where there are repeats: coefficients to 5 %, the path to 12 %.
-    #[must_use]
     pub fn guess(instrument: &Instrument) -> Self {
         let spread = Spread::new(0.05, 0.12, instrument);
         Self {
@@ -136,7 +132,6 @@ impl Noise {
 
     /// The most likely noise of the runs of the conditions `fit`, whose observables follow the
     /// run-to-run inputs by `sensitivities` (in the same order), searched from `self`.
-    #[must_use]
     pub fn estimate(
         &self,
         observed: &Observed,
@@ -200,7 +195,6 @@ impl Noise {
     }
 
     /// As JSON for a report on `set`, by `forward`.
-    #[must_use]
     pub fn to_json(&self, set: &MeasurementSet, forward: &dyn Forward) -> Value {
         let (key, reading) = match set.kind.curve() {
             Some(curve) => (curve.sigma_key, reading_error(set, curve)),
@@ -228,7 +222,6 @@ impl Noise {
     }
 
     /// Covariance of the numbers of one run.
-    #[must_use]
     pub fn covariance(
         &self,
         condition: &ObservedCondition,
@@ -247,7 +240,6 @@ impl Noise {
 
     /// What the mean of a condition scatters by together with all its runs, a column for each coefficient and for the
     /// angle: its covariance is the product with the transposed. `None` where nothing scatters between conditions.
-    #[must_use]
     pub(crate) fn between_conditions(&self, sensitivity: &Sensitivity) -> Option<DMatrix<f64>> {
         let slope = sensitivity.by_coefficients();
         let of_coefficients = slope.column_iter().filter(|_| self.sessions.sd > 0.0);
@@ -257,7 +249,6 @@ impl Noise {
     }
 
     /// The column of the angle among these.
-    #[must_use]
     pub(crate) fn angle_of_condition(&self, sensitivity: &Sensitivity) -> Option<DVector<f64>> {
         let slope = sensitivity.by_angle();
         let column = slope.column_iter().next()?;

@@ -22,7 +22,6 @@ pub struct Weight {
 }
 
 /// The covariance `own` of the predictions of `observed`, plus the variance of a stopping time with the `error` (s).
-#[must_use]
 pub(crate) fn with_stop_error(
     own: Option<DMatrix<f64>>,
     observed: &ObservedCondition,
@@ -39,7 +38,6 @@ pub(crate) fn with_stop_error(
 impl Weight {
     /// For the mean over the runs of `condition` under `noise`, held against a prediction whose covariance
     /// is `own`; `None` if the covariance of both is singular.
-    #[must_use]
     pub fn new(
         condition: &ObservedCondition,
         sensitivity: &Sensitivity,
@@ -62,13 +60,11 @@ impl Weight {
     }
 
     /// What the mean scatters by together with all its runs, as `Noise::between_conditions` has it.
-    #[must_use]
     pub fn between(&self) -> Option<&DMatrix<f64>> {
         self.between.as_ref()
     }
 
     /// `vector` in units of its standard deviation, freed of correlation.
-    #[must_use]
     pub(crate) fn whiten(&self, vector: &DVector<f64>) -> DVector<f64> {
         let mut white = vector.clone();
         // The diagonal of a Cholesky factor is positive, so there is a solution.
@@ -77,7 +73,6 @@ impl Weight {
     }
 
     /// Every column of `matrix` likewise.
-    #[must_use]
     pub(crate) fn whiten_columns(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
         let mut white = matrix.clone();
         self.factor.l_dirty().solve_lower_triangular_mut(&mut white);
@@ -85,14 +80,12 @@ impl Weight {
     }
 
     /// The vector that `whiten` makes `white` of.
-    #[must_use]
     pub fn colour(&self, white: &DVector<f64>) -> DVector<f64> {
         self.factor.l() * white
     }
 
     /// The same less what the condition's own angle is off by, as likely as `white` and the scatter of angles make it: the
     /// conditional mean of normal errors. No model predicts how well a launcher was set.
-    #[must_use]
     pub(crate) fn colour_without_angle(&self, white: &DVector<f64>) -> DVector<f64> {
         match &self.angle {
             Some(angle) => self.colour(white) - angle * self.whiten(angle).dot(white),
@@ -101,22 +94,17 @@ impl Weight {
     }
 
     /// Standard error of each number of the mean.
-    #[must_use]
     pub(crate) fn standard_errors(&self) -> DVector<f64> {
         let factor = self.factor.l();
         DVector::from_iterator(factor.nrows(), factor.row_iter().map(|row| row.norm()))
     }
 
     /// Logarithm of the determinant of the covariance of the mean.
-    #[must_use]
     pub(crate) fn log_determinant(&self) -> f64 {
         log_determinant(&self.factor)
     }
 
     /// What the mean of runs is expected to be at `point`.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated there.
     pub fn predict(
         &self,
         point: &Point,

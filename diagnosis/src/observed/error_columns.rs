@@ -15,7 +15,6 @@ pub struct Column {
 }
 
 /// Every column, in the order of [`Observable::ALL`]; the last is relative.
-#[must_use]
 pub fn columns() -> Vec<Column> {
     let of_kind = |observable: Observable| {
         let Axis { name, unit, scale } = named(observable);
@@ -26,7 +25,6 @@ pub fn columns() -> Vec<Column> {
 }
 
 /// The name, unit and scale of a kind of number in tables.
-#[must_use]
 pub fn named(observable: Observable) -> Axis {
     let [name, unit] = match observable {
         Observable::Depth => ["z", "mm"],

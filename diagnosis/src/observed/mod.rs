@@ -74,7 +74,6 @@ impl Observed {
     /// impact speed (a tenth earlier, where the resting point is measured), so the creep of shallow
     /// slow shots is left out. Scalars count where every run
     /// of the condition has them. Stray frames and mistracked runs are left out ([`without_strays`]).
-    #[must_use]
     pub fn of(set: &MeasurementSet) -> Self {
         let Cleaned { set, mut notes } = without_strays(set, position_error(&set.instrument));
         let set = &set;
@@ -109,27 +108,23 @@ impl Observed {
     }
 
     /// With at most so many `frames` of every condition, evenly spaced, first and last among them.
-    #[must_use]
     pub fn thinned(&self, frames: usize) -> Self {
         let conditions = self.conditions.iter().map(|condition| condition.thinned(frames));
         Self { conditions: conditions.collect(), ..self.clone() }
     }
 
     /// Whether any condition that may be fitted to was repeated.
-    #[must_use]
     pub(crate) fn has_repeats(&self) -> bool {
         self.contrasts() > 0
     }
 
     /// How many independent deviations from the means of conditions the repeats give.
-    #[must_use]
     pub(crate) fn contrasts(&self) -> usize {
         self.fit.iter().map(|&index| self.conditions[index].runs.len() - 1).sum()
     }
 
     /// From how many independent numbers the scatter of runs is known: the frames of one run are no more than
     /// four of them. Infinite where nothing is learned from repeats.
-    #[must_use]
     pub fn freedom(&self) -> f64 {
         let of = |&index: &usize| {
             let condition = &self.conditions[index];
@@ -142,14 +137,12 @@ impl Observed {
     }
 
     /// Whether every number of every condition to fit has a stated error.
-    #[must_use]
     pub fn has_stated_errors(&self) -> bool {
         !self.fit.is_empty()
             && self.fit.iter().all(|&c| self.conditions[c].stated.iter().all(Option::is_some))
     }
 
     /// The layouts, in the order of the conditions: what a model is asked to predict.
-    #[must_use]
     pub fn layouts(&self) -> Vec<Layout> {
         self.conditions.iter().map(|condition| condition.layout.clone()).collect()
     }
@@ -296,7 +289,6 @@ impl ObservedCondition {
     }
 
     /// The numbers of run `run` less the mean of the condition.
-    #[must_use]
     pub fn deviation(&self, run: usize) -> DVector<f64> {
         &self.runs[run] - &self.mean
     }

@@ -19,7 +19,6 @@ const HALF_WINDOW: usize = 3;
 /// Times (s) at which all `tracks` have readings: the mean times of the frames themselves where they
 /// agree, else equally spaced over what all cover, at the median spacing of frames, and no more of
 /// them than the longest track has frames.
-#[must_use]
 fn common_grid(tracks: &[&[Frame]]) -> Vec<f64> {
     let start = tracks.iter().filter_map(|t| t.first()).fold(f64::MIN, |s, f| s.max(f.t));
     let end = tracks.iter().filter_map(|t| t.last()).fold(f64::MAX, |e, f| e.min(f.t));
@@ -42,7 +41,6 @@ fn common_grid(tracks: &[&[Frame]]) -> Vec<f64> {
 }
 
 /// The times of [`common_grid`] outside gaps of any track, and where no track is on either side of first contact.
-#[must_use]
 pub(crate) fn seen_grid(tracks: &[&[Frame]]) -> Vec<f64> {
     let all = common_grid(tracks);
     let Some(step) = median(all.windows(2).map(|pair| pair[1] - pair[0])) else { return all };
@@ -81,7 +79,6 @@ fn mean_times(tracks: &[Vec<f64>]) -> Option<Vec<f64>> {
 
 /// Depth and range (m) of `track` at the times of `grid`: between frames on the cubic through four near ones on the same
 /// side of first contact, which a slow camera needs; on the line between two where there are no such four.
-#[must_use]
 pub(crate) fn depth_and_range(track: &[Frame], grid: &[f64]) -> Vec<(f64, f64)> {
     read(track, grid, |at| {
         let mut four = [1, 0, 2].into_iter().filter_map(|before| {
@@ -93,7 +90,6 @@ pub(crate) fn depth_and_range(track: &[Frame], grid: &[f64]) -> Vec<(f64, f64)> 
 }
 
 /// What `track` holds in place of depths at the times of `grid`, linear between frames: a curve may jump.
-#[must_use]
 pub(crate) fn on_lines(track: &[Frame], grid: &[f64]) -> Vec<f64> {
     read(track, grid, |at| &track[at..at + 2]).into_iter().map(|one| one.0).collect()
 }
@@ -145,7 +141,6 @@ fn is_on_one_side(frames: &[Frame]) -> bool {
 
 /// How many frames of `grid` lie before the speed first falls below 5 % of `speed` (m/s), or of the
 /// greatest since, for an intruder that is let go from rest.
-#[must_use]
 pub(crate) fn stopped_at(grid: &[f64], mean: &[(f64, f64)], speed: f64) -> usize {
     let speed_at = |at: usize| {
         let window = at.saturating_sub(HALF_WINDOW)..(at + HALF_WINDOW + 1).min(grid.len());

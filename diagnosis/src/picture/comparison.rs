@@ -55,9 +55,6 @@ impl Panel {
 
 /// Scalars over speed, a colour per angle and a dash per revision, as SVG; `None` where a set has
 /// trajectories alone.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn comparison(
     set: &MeasurementSet,
     comparison: &Comparison,

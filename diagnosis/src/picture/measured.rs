@@ -24,9 +24,6 @@ const SCALARS: [Scalar; 5] = [
 
 /// Depth over time of every run beside the stated impact speed, or its curve, a panel per condition; of a set of
 /// scalars, every number over the speed.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn measured(set: &MeasurementSet) -> Result<String, PictureError> {
     match set.kind {
         Kind::Trajectory => paths(set),

@@ -161,7 +161,6 @@ impl ResistiveForward {
     }
 
     /// Free parameters of the model that no number of the set depends on; they stay as they are.
-    #[must_use]
     pub fn idle(&self) -> &[String] {
         &self.idle
     }
@@ -172,13 +171,11 @@ impl ResistiveForward {
     }
 
     /// Names in `[parameters]` of the set that are no free parameter of the model.
-    #[must_use]
     pub fn unused_priors(&self) -> &[String] {
         &self.unused_priors
     }
 
     /// The effects that are candidates, in their order: those of the table, then those of the model.
-    #[must_use]
     pub fn effects(&self) -> &[Effect] {
         &self.effects
     }

@@ -33,7 +33,6 @@ pub struct StopDifference {
 
 impl StopDifference {
     /// How the second run stops otherwise than the first.
-    #[must_use]
     pub fn between(first: &Summary, second: &Summary) -> Self {
         let [a, b] = [&first.stop, &second.stop];
         Self {

@@ -462,7 +462,6 @@ impl Diagnosis {
     }
 
     /// Whether the verdict says that the model lacks an effect.
-    #[must_use]
     pub(crate) fn is_something_missing(&self) -> bool {
         matches!(
             self.verdict,
@@ -475,9 +474,6 @@ impl Diagnosis {
     }
 
     /// As one JSON object.
-    ///
-    /// # Errors
-    /// Never for a diagnosis that this crate made.
     pub fn to_json(&self) -> serde_json::Result<Value> {
         serde_json::to_value(self)
     }

@@ -29,22 +29,17 @@ pub const MISSING_FORCE: &str = "missing_force.svg";
 
 /// What keeps a table or picture from being written.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum FilesError {
-    /// A table.
     #[error("cannot write a table: {0}")]
     Table(#[from] csv::Error),
-    /// The file of numbers.
     #[error("cannot write numbers: {0}")]
     Json(#[from] serde_json::Error),
-    /// A picture.
     #[error(transparent)]
     Picture(#[from] PictureError),
 }
 
 /// Names and texts of the files of `force`: along the paths as a table, and its picture.
-///
-/// # Errors
-/// If a file cannot be written.
 pub fn files_of(
     force: &MissingForce,
     set: &MeasurementSet,
@@ -58,9 +53,6 @@ pub fn files_of(
 
 impl WhereItFails<'_> {
     /// Names and texts of the files; without those that the set cannot have.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
     pub fn files(&self) -> Result<Vec<(String, String)>, FilesError> {
         if self.models.is_empty() {
             return Ok(Vec::new());

@@ -33,7 +33,6 @@ pub(super) fn fill_fraction(space: Space) -> f64 {
 
 /// Grains of all kinds at random places in `container`, discs or spheres as `space` says, none
 /// touching another or a wall; the container is filled as high as it takes.
-#[must_use]
 pub fn fill(kinds: &[GrainKind], (space, container): (Space, &Container), seed: u64) -> Vec<Grain> {
     let mut rng = random(seed, "fill");
     let ([width, depth], period) = (container.extents(), container.period(space));

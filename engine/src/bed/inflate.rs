@@ -27,7 +27,6 @@ const MORE_ROOM: f64 = 1.01;
 
 /// Packing fractions to which grains can be grown in `space`: from what grains at random places fill to a
 /// little below where they jam (0.84 for discs of two sizes, 0.64 for spheres).
-#[must_use]
 pub fn inflation_range(space: Space) -> (f64, f64) {
     match space {
         Space::Planar => (fill_fraction(space), 0.82),
@@ -42,7 +41,6 @@ pub fn inflation_range(space: Space) -> (f64, f64) {
 ///
 /// Where they jam before, as they may between close walls, the room becomes higher by a hundredth at a time.
 /// `fraction` is one of [`inflation_range`].
-#[must_use]
 pub fn inflate(
     kinds: &[GrainKind],
     (space, container): (Space, &Container),

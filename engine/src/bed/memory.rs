@@ -9,7 +9,6 @@ const LAYERS: f64 = 2.0;
 
 /// The larger of two memories (byte): that of the cells in which grains up to the diameter `largest` (m) are placed, and that
 /// of the columns in which the height of a bed of grains of diameter `mean` (m) is measured. It may be infinite.
-#[must_use]
 pub fn container_bytes((space, container): (Space, &Container), [largest, mean]: [f64; 2]) -> f64 {
     let [width, depth] = container.extents();
     let over = |size: f64| {

@@ -22,7 +22,6 @@ pub use sizes::SizeDistribution;
 
 /// A generator of random numbers for one purpose: the same for the same seed and name, whatever
 /// else a run draws.
-#[must_use]
 pub fn random(seed: u64, purpose: &str) -> Pcg64 {
     let hash =
         blake3::Hasher::new().update(&seed.to_le_bytes()).update(purpose.as_bytes()).finalize();

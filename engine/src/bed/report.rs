@@ -30,7 +30,6 @@ pub struct BedReport {
 }
 
 /// Mean height of the surface of `bed` (m), as [`BedReport::height`].
-#[must_use]
 pub fn surface_height(bed: &GrainBed) -> f64 {
     let grains = &bed.grains;
     let spacing = spacing(grains.space) * grains.mean_diameter();
@@ -39,7 +38,6 @@ pub fn surface_height(bed: &GrainBed) -> f64 {
 
 impl BedReport {
     /// Measures `bed`.
-    #[must_use]
     pub fn of(bed: &GrainBed) -> Self {
         let grains = &bed.grains;
         let container = bed.container();

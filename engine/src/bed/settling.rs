@@ -90,7 +90,6 @@ impl Settling {
     ///
     /// # Panics
     /// If there are no grains.
-    #[must_use]
     pub fn new(
         grains: &[Grain],
         (space, container): (Space, Container),
@@ -142,9 +141,6 @@ impl Settling {
     }
 
     /// Moves on by one step.
-    ///
-    /// # Errors
-    /// If the step cannot be trusted.
     pub fn advance(&mut self) -> Result<(), StepError> {
         self.world.advance()?;
         let step = self.clock().step;
@@ -220,7 +216,6 @@ impl Settling {
     }
 
     /// Whether the bed has kept still without drag for long enough, and no tap is to follow.
-    #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.stage == Stage::Resting
     }
@@ -228,38 +223,32 @@ impl Settling {
     /// How far the bed is from rest (–): the mean kinetic energy of a grain over 10⁻⁶ m g d, or the mean
     /// unbalanced force over a thousandth of the mean contact force, whichever is more, each without
     /// the greatest hundredth. It has to stay below 1.
-    #[must_use]
     pub fn restlessness(&self) -> f64 {
         self.scales.restlessness(self.bed())
     }
 
     /// How long (s) it has been settling since it was filled, or tapped last.
-    #[must_use]
     pub fn time_since_tap(&self) -> f64 {
         self.clock().time() - self.tapping.tapped_at
     }
 
     /// How often it has been tapped.
-    #[must_use]
     pub fn taps(&self) -> u32 {
         self.tapping.taps
     }
 
     /// Simulated time and steps.
-    #[must_use]
     pub fn clock(&self) -> Clock {
         self.world.clock()
     }
 
     /// Everything that changes while it settles.
-    #[must_use]
     pub fn save(&self) -> SavedSettling {
         SavedSettling { world: self.world.save(), stage: self.stage, tapping: self.tapping }
     }
 
     /// Takes back a saved state of the same preparation; `false`, and an unusable one, if it is of
     /// another.
-    #[must_use]
     pub fn restore(&mut self, saved: SavedSettling) -> bool {
         if saved.stage.has_fallen() || saved.tapping.taps > 0 {
             self.world.change_step(self.dt);
@@ -270,7 +259,6 @@ impl Settling {
     }
 
     /// The bed as it stands.
-    #[must_use]
     pub fn bed(&self) -> &GrainBed {
         self.world.bed()
     }

@@ -42,7 +42,6 @@ impl SizeDistribution {
     pub const LOGNORMAL_REACH: f64 = 3.0;
 
     /// The logarithm of the diameter is normal about that of `median` (m), with the standard deviation `sigma`.
-    #[must_use]
     pub fn lognormal(median: f64, sigma: f64) -> Self {
         let limit = |reach: f64| median * libm::exp(reach * sigma);
         let [min, max] = [-Self::LOGNORMAL_REACH, Self::LOGNORMAL_REACH].map(limit);
@@ -50,7 +49,6 @@ impl SizeDistribution {
     }
 
     /// The smallest diameter that may be drawn (m).
-    #[must_use]
     pub fn smallest(&self) -> f64 {
         match self {
             Self::Equal(diameter) => *diameter,
@@ -60,7 +58,6 @@ impl SizeDistribution {
     }
 
     /// The largest diameter that may be drawn (m).
-    #[must_use]
     pub fn largest(&self) -> f64 {
         match self {
             Self::Equal(diameter) => *diameter,
@@ -70,7 +67,6 @@ impl SizeDistribution {
     }
 
     /// The mean of dⁿ (mⁿ).
-    #[must_use]
     pub fn moment(&self, n: i32) -> f64 {
         match self {
             Self::Equal(diameter) => diameter.powi(n),

@@ -25,7 +25,6 @@ pub struct Layer {
 
 impl Layer {
     /// The layer of `thickness` (m) for waves of the speed `wave_speed` (m/s).
-    #[must_use]
     pub fn for_waves(thickness: f64, wave_speed: f64) -> Self {
         Self { thickness, rate: STRENGTH * wave_speed / thickness }
     }
@@ -60,7 +59,6 @@ impl Absorber {
     }
 
     /// γ (1/s) of a grain at `position`.
-    #[must_use]
     pub fn rate(&self, position: Vec3) -> f64 {
         let bottom = self.bottom.map_or(0.0, |layer| layer.at(position.z));
         bottom + self.sides.map_or(0.0, |layer| self.rate_of_sides(&layer, position))

@@ -65,13 +65,11 @@ pub enum Bottom {
 
 impl Container {
     /// A box with walls, `width` (m) along x and `depth` (m) along y.
-    #[must_use]
     pub const fn walled_box(width: f64, depth: f64) -> Self {
         Self { base: Base::Rectangle { width, depth }, sides: Sides::Wall, bottom: Bottom::Wall }
     }
 
     /// Its extents along x and y (m), from 0.
-    #[must_use]
     pub fn extents(&self) -> [f64; 2] {
         match self.base {
             Base::Rectangle { width, depth } => [width, depth],
@@ -80,7 +78,6 @@ impl Container {
     }
 
     /// Area of the floor (m²), or its width (m) in a plane.
-    #[must_use]
     pub fn base_area(&self, space: Space) -> f64 {
         match (self.base, space) {
             (Base::Rectangle { width, .. }, Space::Planar) => width,
@@ -91,7 +88,6 @@ impl Container {
     }
 
     /// The smaller distance of two opposite sides (m).
-    #[must_use]
     pub fn narrowest(&self, space: Space) -> f64 {
         let [width, depth] = self.extents();
         match space {
@@ -102,7 +98,6 @@ impl Container {
 
     /// Whether a circle (disc, sphere) of `radius` (m) about x, y lies between the sides; periodic ones
     /// ask for the centre alone.
-    #[must_use]
     pub fn holds(&self, space: Space, (x, y): (f64, f64), radius: f64) -> bool {
         let radius = if self.sides == Sides::Periodic { 0.0 } else { radius };
         let within = |at: f64, length: f64| at >= radius && at <= length - radius;
@@ -122,7 +117,6 @@ impl Container {
 
     /// The nearest place to `place` at which the sides hold a circle (disc, sphere) of `radius` (m), and its
     /// image inside of sides that repeat; as high as it was.
-    #[must_use]
     pub(crate) fn nearest_within(&self, space: Space, place: Vec3, radius: f64) -> Vec3 {
         if self.sides == Sides::Periodic {
             return self.period(space).inside(place);
@@ -146,7 +140,6 @@ impl Container {
     }
 
     /// How the sides repeat.
-    #[must_use]
     pub fn period(&self, space: Space) -> Period {
         match (self.sides, space) {
             (Sides::Periodic, Space::Planar) => Period::new(self.extents()[0], f64::INFINITY),
@@ -159,13 +152,11 @@ impl Container {
     }
 
     /// What takes the energy out of waves; `None` where nothing does.
-    #[must_use]
     pub(crate) fn absorber(&self, space: Space) -> Option<Absorber> {
         Absorber::new(self, space)
     }
 
     /// The floor, then the sides.
-    #[must_use]
     pub fn walls(&self, space: Space) -> Vec<Arc<dyn Surface>> {
         let mut walls: Vec<Arc<dyn Surface>> =
             vec![Arc::new(HalfSpace { origin: Vec3::zeros(), normal: Vec3::z() })];

@@ -20,7 +20,6 @@ impl Period {
     pub const NONE: Self = Self { half: [f64::INFINITY; 2] };
 
     /// Repeats after `width` (m) along x and `depth` (m) along y.
-    #[must_use]
     pub fn new(width: f64, depth: f64) -> Self {
         Self { half: [0.5 * width, 0.5 * depth] }
     }

@@ -78,35 +78,30 @@ pub struct Contact<R: Lanes = f64, const N: usize = 3> {
 impl<R: Lanes, const N: usize> Contact<R, N> {
     /// R* (m).
     #[inline(always)]
-    #[must_use]
     pub fn radius_eff(&self) -> R {
         R::one() / self.inverse_radius_eff
     }
 
     /// m* (kg).
     #[inline(always)]
-    #[must_use]
     pub fn mass_eff(&self) -> R {
         R::one() / self.inverse_mass_eff
     }
 
     /// Whether the two overlap.
     #[inline(always)]
-    #[must_use]
     pub fn overlaps(&self) -> R::Mask {
         self.overlap.simd_gt(R::zero())
     }
 
     /// The component of a slip or spin along the normal; zero in a plane.
     #[inline(always)]
-    #[must_use]
     pub fn along(&self, vector: Vector<R, N>) -> R {
         if N == 1 { R::zero() } else { vector.dot(&self.normal) }
     }
 
     /// The part of a slip or spin across the normal; in a plane all of it.
     #[inline(always)]
-    #[must_use]
     pub fn across(&self, vector: Vector<R, N>) -> Vector<R, N> {
         if N == 1 { vector } else { vector - self.normal * self.along(vector) }
     }
@@ -114,7 +109,6 @@ impl<R: Lanes, const N: usize> Contact<R, N> {
     /// Turns a vector that lay in an earlier contact plane into the present one, its length kept
     /// (Luding, Granul. Matter 10, 235 (2008), eq. 17).
     #[inline(always)]
-    #[must_use]
     pub fn turn(&self, vector: Vector<R, N>) -> Vector<R, N> {
         if N == 1 {
             return vector;

@@ -47,7 +47,6 @@ pub struct Merger {
 
 impl ContactTable {
     /// An empty table whose stages remember `history_len` values per contact each.
-    #[must_use]
     pub fn new(history_len: &[usize]) -> Self {
         Self { history_len: history_len.to_vec(), ..Self::default() }
     }
@@ -85,25 +84,21 @@ impl ContactTable {
     }
 
     /// Whether the contact of `row` was touching when last evaluated.
-    #[must_use]
     pub(crate) fn is_touching(&self, row: usize) -> bool {
         self.candidates[row].record != APART
     }
 
     /// How many contacts touch.
-    #[must_use]
     pub(crate) fn n_touching(&self) -> usize {
         self.candidates.iter().filter(|candidate| candidate.record != APART).count()
     }
 
     /// Length of one row of each stage's history.
-    #[must_use]
     pub fn history_len(&self) -> &[usize] {
         &self.history_len
     }
 
     /// The history of `row` under `stage`; nothing if it does not touch.
-    #[must_use]
     pub fn history(&self, stage: usize, row: usize) -> &[f64] {
         if !self.is_touching(row) {
             return &[];
@@ -205,7 +200,6 @@ impl ContactTable {
 
     /// Whether the parts fit together, for a table that was read from a file: contacts of the grains
     /// `own` with partners below `n_grains`.
-    #[must_use]
     pub(crate) fn is_consistent(
         &self,
         own: Range<usize>,

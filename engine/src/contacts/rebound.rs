@@ -16,7 +16,6 @@ const PATIENCE: f64 = 20.0;
 /// The coefficient of restitution (–) of a head-on collision under `stages`, in the order of their slots,
 /// without spin or gravity; 0 where the two stay together, `None` where no law says how long a collision
 /// lasts.
-#[must_use]
 pub fn restitution(
     stages: &[Box<dyn ContactStage>],
     partner: Partner,

@@ -71,7 +71,6 @@ pub struct Stage<L: ContactLaw> {
 
 impl<L: ContactLaw> Stage<L> {
     /// Derives the parameters of each kind of partner.
-    #[must_use]
     pub fn new(law: &L) -> Self {
         const { assert!(<L::Energy<f64> as Record<f64>>::LEN == L::CHANNELS.len()) }
         Self { pairs: Partner::ALL.map(|partner| law.pair(partner)) }

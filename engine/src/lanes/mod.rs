@@ -305,7 +305,6 @@ pub trait Record<R: Lanes>: Copy {
 
     /// All numbers zero.
     #[inline(always)]
-    #[must_use]
     fn zero() -> Self {
         Self::read(&mut R::zero)
     }

@@ -30,7 +30,6 @@ impl ChunkHead {
     pub const MAX: usize = 44;
 
     /// Reads the start of a chunk record's body; `None` if it cannot be one.
-    #[must_use]
     pub fn parse(body: &[u8]) -> Option<Self> {
         let long = |at: usize| Some(u64::from_le_bytes(body.get(at..at + 8)?.try_into().ok()?));
         let short = |at: usize| Some(u32::from_le_bytes(body.get(at..at + 4)?.try_into().ok()?));
@@ -168,7 +167,6 @@ pub struct Records<'a>(&'a [u8]);
 
 impl<'a> Records<'a> {
     /// Over the records in `bytes`, as [`unpack`] leaves them.
-    #[must_use]
     pub fn new(bytes: &'a [u8]) -> Self {
         Self(bytes)
     }

@@ -160,7 +160,6 @@ impl RunLog {
 
     /// How far the log has come. Take it, for a checkpoint, after the last message of the step
     /// and after [`flush`](Self::flush).
-    #[must_use]
     pub fn position(&self) -> LogPosition {
         let grains = self.grains.as_ref();
         LogPosition {
@@ -353,9 +352,6 @@ impl RunLog {
     }
 
     /// Writes an event.
-    ///
-    /// # Errors
-    /// The file system's refusal.
     pub fn event(&mut self, at: Stamp, level: EventLevel, text: &str) -> Result<(), RecordError> {
         let stamp = at.encode()?;
         let level = match level {
@@ -379,9 +375,6 @@ impl RunLog {
     /// Chunk ends are part of the bytes: call it after the last message of a multiple of
     /// [`LogSetup::checkpoint_every`], or at any step if the process then leaves and the run is
     /// later resumed, since resuming cuts the chunks anew.
-    ///
-    /// # Errors
-    /// The file system's refusal.
     pub fn flush(&mut self) -> Result<(), RecordError> {
         self.run.flush()?;
         self.grains.as_mut().map_or(Ok(()), LogFile::flush)

@@ -100,7 +100,6 @@ pub enum UnitFault {
 
 impl UnitError {
     /// What is wrong, as a clause.
-    #[must_use]
     pub fn reason(&self) -> String {
         let found = &self.found;
         match &self.fault {
@@ -116,7 +115,6 @@ impl UnitError {
     }
 
     /// What to write instead, as a clause.
-    #[must_use]
     pub fn advice(&self) -> String {
         match &self.fault {
             UnitFault::OutOfRange => "in SI units, 1e-307 to 1e308 is possible".to_owned(),
@@ -185,7 +183,6 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
 
 /// The dimension of the unit `text`, such as `kg/m`; `1` is that of a pure number. Nothing if it is no
 /// unit.
-#[must_use]
 pub fn dimension_of(text: &str) -> Option<Dimension> {
     let text = text.trim();
     match text.is_empty() {

@@ -34,7 +34,6 @@ const SIMPLE: [Dimension; 4] =
 ///
 /// It fits everything that [`super::parse`] takes as one where units are written as usual. Units of one or two
 /// factors of another dimension do not fit; in a unit of more factors, the dimension is not looked at.
-#[must_use]
 pub fn pattern(dimension: Dimension) -> String {
     let mut units = single(dimension);
     if !SIMPLE.contains(&dimension) {

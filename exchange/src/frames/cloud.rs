@@ -58,9 +58,6 @@ impl CloudReader {
     }
 
     /// The cloud that `data` encodes.
-    ///
-    /// # Errors
-    /// What is wrong with it, in a sentence.
     pub(crate) fn read(&self, data: &[u8]) -> Result<Cloud, String> {
         let message =
             DynamicMessage::decode(self.message.clone(), data).map_err(|e| e.to_string())?;

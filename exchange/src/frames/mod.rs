@@ -43,7 +43,6 @@ pub struct Frame {
 
 impl Frame {
     /// Whether all grains lie in one plane y = const, as those of a planar run do.
-    #[must_use]
     pub fn is_planar(&self) -> bool {
         let y = |grain: &Grain| grain.position[1].to_bits();
         self.grains.windows(2).all(|pair| y(&pair[0]) == y(&pair[1]))
@@ -51,7 +50,6 @@ impl Frame {
 
     /// The mean surface of the bed around the vertical axis through `x`, `y` (m), in rings one mean diameter
     /// wide (planar: intervals to both sides). Of the bed are grains that a chain of contacts joins to its lowest.
-    #[must_use]
     pub fn crater(&self, x: f64, y: f64) -> Vec<CraterPoint> {
         let space = if self.is_planar() { Space::Planar } else { Space::Spatial };
         let vector = |[x, y, z]: [f32; 3]| Vec3::new(f64::from(x), f64::from(y), f64::from(z));

@@ -75,21 +75,14 @@ pub struct Deck {
 
 /// Why a model cannot be handed to LAMMPS.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum LammpsError {
-    /// It has something that LAMMPS has no word for.
     #[error("LAMMPS cannot express {}", .0.join("; nor "))]
     Inexpressible(Vec<String>),
-    /// It cannot be built at all.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// A file cannot be written.
     #[error("cannot write {}: {source}", path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// The operating system's answer.
-        source: io::Error,
-    },
+    Io { path: PathBuf, source: io::Error },
 }
 
 impl Deck {
@@ -129,9 +122,6 @@ impl Deck {
     }
 
     /// Writes its files into `folder`, which is made if it is missing.
-    ///
-    /// # Errors
-    /// If the system refuses.
     pub fn write(&self, folder: &Path) -> Result<(), LammpsError> {
         let io = |path: &Path| {
             let path = path.to_owned();

@@ -93,9 +93,6 @@ pub(crate) fn each_message<R: Receiver>(path: &Path, receiver: &mut R) -> Result
 }
 
 /// The message `name` of a serialized set of descriptors.
-///
-/// # Errors
-/// What is wrong with the set, in a sentence.
 pub(crate) fn described(name: &str, set: &[u8]) -> Result<MessageDescriptor, String> {
     let set = FileDescriptorSet::decode(set).map_err(|error| error.to_string())?;
     // `prost-reflect` 0.16 panics where it should refuse an unknown syntax.

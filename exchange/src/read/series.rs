@@ -59,7 +59,6 @@ pub struct Closing {
 
 impl EnergyBudgets {
     /// The values of the term `name` (J); `None` if the log has no such term.
-    #[must_use]
     pub fn term(&self, name: &str) -> Option<&[f64]> {
         let at = self.terms.iter().position(|term| term == name)?;
         Some(&self.values[at])

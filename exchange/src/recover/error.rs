@@ -5,38 +5,16 @@ use std::path::{Path, PathBuf};
 
 /// Why nothing could be recovered.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum RecoverError {
-    /// The file system refused an operation.
     #[error("{}: cannot {doing}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What was being done, as in "cannot …".
-        doing: &'static str,
-        /// The operating system's answer.
-        source: io::Error,
-    },
-    /// The new log could not be written.
+    Io { path: PathBuf, doing: &'static str, source: io::Error },
     #[error("{}: {source}", path.display())]
-    Write {
-        /// The new log.
-        path: PathBuf,
-        /// The writer's answer.
-        source: mcap::McapError,
-    },
-    /// The input has neither the mark of an MCAP file nor any record of one.
+    Write { path: PathBuf, source: mcap::McapError },
     #[error("{}: not an MCAP file", path.display())]
-    NotMcap {
-        /// The input.
-        path: PathBuf,
-    },
-    /// The output exists, or is the input.
+    NotMcap { path: PathBuf },
     #[error("{}: exists already; name a new file", path.display())]
-    OutputExists {
-        /// The output.
-        path: PathBuf,
-    },
-    /// It was asked to stop; nothing was written.
+    OutputExists { path: PathBuf },
     #[error("stopped before the end")]
     Stopped,
 }

@@ -92,9 +92,6 @@ pub(super) fn is_body(stem: &str) -> bool {
 
 impl Bodies {
     /// Reads a table of bodies.
-    ///
-    /// # Errors
-    /// What is wrong with it.
     pub(super) fn read(path: &Path) -> Result<Self, Fault> {
         let sheets = inputs::sheets(path, &inputs::bytes(path)?)?;
         let sheet = &sheets[0];

@@ -48,19 +48,12 @@ impl fmt::Display for Fault {
 
 /// Why there is no set.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum TrackingError {
-    /// The tables or the options are wrong: everything of one kind at once.
     #[error("{}", listed(.0))]
     Input(Vec<Fault>),
-    /// A file or folder cannot be written.
     #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// Which.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// `import.toml` is wrong: the message as shown, ending in a line break.
+    Write { path: PathBuf, source: io::Error },
     #[error("{0}")]
     ImportFile(String),
 }

@@ -126,9 +126,6 @@ fn fitting(pattern: &str) -> Result<Vec<PathBuf>, Fault> {
 }
 
 /// The content of a file.
-///
-/// # Errors
-/// If it cannot be read.
 pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Fault> {
     let shown = path.display().to_string();
     read_bounded(path, &shown, MOST).map_err(|error| {

@@ -53,7 +53,6 @@ pub use options::Options;
 pub use set::{Earlier, Set, Understood};
 
 /// Whether a file in `folder` is called like a table.
-#[must_use]
 pub fn has_tables(folder: &Path) -> bool {
     inputs::tables_in(folder, None).is_ok()
 }

@@ -45,9 +45,6 @@ pub(super) fn is_of_run(name: &str) -> bool {
 
 impl Pattern {
     /// Reads a pattern.
-    ///
-    /// # Errors
-    /// What is wrong with it.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let mut parts = Vec::new();
         let mut rest = text;

@@ -51,7 +51,6 @@ impl Options {
     }
 
     /// The option as it was typed.
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<&str> {
         self.0.get(key).map(String::as_str)
     }

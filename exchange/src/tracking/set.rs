@@ -45,9 +45,6 @@ pub struct Set {
 impl Set {
     /// Writes the files of the set into `folder`, which is made where it is missing; `import.toml` and
     /// `measurement.toml` come last, so that a set that is there is whole.
-    ///
-    /// # Errors
-    /// If the system refuses.
     pub fn write(&self, folder: &Path) -> Result<(), TrackingError> {
         let refused = |path: &Path| {
             let path = path.to_owned();
@@ -68,7 +65,6 @@ impl Set {
     }
 
     /// The present content of the files in `folder` that the set would replace.
-    #[must_use]
     pub fn earlier(&self, folder: &Path) -> Earlier {
         let there = |(name, _): &(&'static str, String)| {
             match std::fs::read(folder.join(name)) {
@@ -83,7 +79,6 @@ impl Set {
     }
 
     /// Whether `folder` holds these files already, byte for byte.
-    #[must_use]
     pub fn is_in(&self, folder: &Path) -> bool {
         self.files.iter().all(|(name, content)| {
             std::fs::read(folder.join(name)).is_ok_and(|there| there == content.as_bytes())

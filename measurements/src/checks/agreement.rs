@@ -22,7 +22,6 @@ impl Agreement {
     }
 
     /// As lines for a terminal; empty where the set has no frames that say anything.
-    #[must_use]
     pub fn describe(&self, set: &MeasurementSet) -> String {
         let mut text = self.describe_zeros(set);
         for held in &self.held {
@@ -142,7 +141,6 @@ impl Scalar {
 
 impl Held {
     /// What follows, as a clause.
-    #[must_use]
     pub(crate) fn outcome_in_words(&self) -> String {
         let own = self.misses.first().map_or("", |miss| miss.definition);
         match self.outcome {
@@ -155,7 +153,6 @@ impl Held {
     }
 
     /// What follows, as a word.
-    #[must_use]
     pub fn outcome_key(&self) -> &'static str {
         match self.outcome {
             Outcome::Follows => "follows",

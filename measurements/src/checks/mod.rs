@@ -16,7 +16,6 @@ use crate::{Kind, MeasurementSet};
 impl MeasurementSet {
     /// Whether the set states the error of any number that it compares: of readings, if it has
     /// trajectories, else of scalars.
-    #[must_use]
     pub fn states_errors(&self) -> bool {
         match self.kind {
             Kind::Scalar => {

@@ -48,7 +48,6 @@ pub struct Tip {
 
 impl Tip {
     /// Of a body of this `shape` and `diameter` (m), with this full apex angle (deg), 90 where it is not stated.
-    #[must_use]
     pub fn new(shape: &str, diameter: f64, apex_deg: Option<f64>) -> Self {
         let form = intruders::find(shape).and_then(|entry| entry.measured.tip.as_ref());
         Self { form, diameter, apex: apex_deg.unwrap_or(90.0).to_radians() }

@@ -137,7 +137,6 @@ const MANY: usize = 6;
 
 /// Holds the numbers of `set` against its trajectories; `is_stated` says whether the file names the
 /// definitions of the stop and of the final place.
-#[must_use]
 pub fn hold(set: &MeasurementSet, is_stated: [bool; 2]) -> Vec<Held> {
     if set.kind != Kind::Trajectory {
         return Vec::new();

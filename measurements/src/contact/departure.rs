@@ -66,7 +66,6 @@ impl Departure {
     /// depths in m downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
     /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
     /// freely.
-    #[must_use]
     pub fn of_frames(frames: &[Frame], tip: Tip, gravity: f64, sigma: f64) -> Option<Self> {
         let power = tip.form?.departure;
         let near = velocity_window(frames, sigma, BEHIND)?;
@@ -97,7 +96,6 @@ impl Departure {
     }
 
     /// The same with depths counted from `level` (m).
-    #[must_use]
     pub fn below(&self, level: f64) -> Self {
         let from = |depth: Reading| Reading { value: depth.value - level, ..depth };
         let contact = Contact {

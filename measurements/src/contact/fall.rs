@@ -33,7 +33,6 @@ impl Fall {
     ///
     /// The acceleration is that of a parabola from 30 % of the greatest velocity to it; its error is infinite where
     /// there are too few frames. It is a little too small, as the velocity is greatest just behind the contact.
-    #[must_use]
     pub fn of_frames(frames: &[Frame]) -> Option<Self> {
         let noise = reading_noise(frames);
         let velocity = greatest_velocity(frames, noise)?;
@@ -51,7 +50,6 @@ impl Fall {
 
 /// Error of one reading of a position, from what neighbouring readings differ by beyond a parabola: at least a
 /// millionth of the way, and what the readings are rounded to.
-#[must_use]
 pub fn reading_noise(frames: &[Frame]) -> f64 {
     let ends = frames.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], frame| {
         [low.min(frame.z), high.max(frame.z)]

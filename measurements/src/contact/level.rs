@@ -47,7 +47,6 @@ pub enum Levels {
 }
 
 /// Levels (m) of `runs`: the depths of free fall at contact, on their common scale. `None` without runs.
-#[must_use]
 pub fn levels(runs: &[&Departure]) -> Option<Levels> {
     let curves = curves(runs)?;
     let (together, least_misfit) = together(runs, &curves);
@@ -71,7 +70,6 @@ pub fn levels(runs: &[&Departure]) -> Option<Levels> {
 }
 
 /// Least chi-squared of one level for all `runs`. `None` without runs.
-#[must_use]
 pub fn misfit_of_one_level(runs: &[&Departure]) -> Option<f64> {
     Some(together(runs, &curves(runs)?).1)
 }

@@ -60,7 +60,6 @@ pub struct Contact {
 
 impl Contact {
     /// When free fall at `gravity` (m/s²) passes `level` (m), and the downward velocity (m/s) there.
-    #[must_use]
     pub fn crossing(&self, level: Reading, gravity: f64) -> (Reading, Reading) {
         let Self { time, at_time, falling, .. } = self;
         let (v, ahead) = (falling.value, level.value - at_time.value);
@@ -74,7 +73,6 @@ impl Contact {
 
     /// What a clock and a depth of this run alone would have to be counted from (s, m): the surface is taken
     /// to be right where a clock alone explains what is seen.
-    #[must_use]
     pub fn own_zeros(&self) -> (f64, f64) {
         let [earliest, latest] = self.between;
         let clock = self.depth_at_zero.map(|depth| -depth.value / self.sinking.value);
@@ -109,7 +107,6 @@ const EARLY: usize = 4;
 /// The contact of `run` under `condition`, with the depth of free fall at the time `zero` (s) of the table. Known are the
 /// gravity (m/s²) and its relative error before contact, and the error of a reading (m). `None` where the frames do not show
 /// the contact, or the lowest point of the body does not fall freely.
-#[must_use]
 pub(crate) fn read(
     run: &Run,
     condition: &Condition,

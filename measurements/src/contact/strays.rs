@@ -48,7 +48,6 @@ pub struct Cleaned {
 
 /// `set` without stray frames, runs that look mistracked and scalars that look mistyped, but for the runs that it says to keep; `error` is
 /// the error of one reading of a position (m).
-#[must_use]
 pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
     let (mut notes, mut set) = (Vec::new(), set.clone());
     let (mut frames, mut of, mut first) = (0, 0, None);
@@ -113,7 +112,6 @@ pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
 
 /// Which of `frames` are stray, `error` being that of one reading of a position. None is in a path of few frames, nor where
 /// so many look so that the path is not known.
-#[must_use]
 pub fn stray_frames(frames: &[Frame], error: f64) -> Vec<bool> {
     let none = vec![false; frames.len()];
     if frames.len() < FEWEST_FRAMES {

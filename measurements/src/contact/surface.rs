@@ -15,7 +15,6 @@ impl SurfaceDefinition {
     /// A body meets the highest grains first, and their heights scatter by less than a grain diameter. If depths count from the
     /// mean surface, the depths at first contact scatter likewise; if they count from first contact, they do not. In fine
     /// grains this scatter is below the error of a reading, and the result is `FirstContact`.
-    #[must_use]
     pub fn shown_by(set: &MeasurementSet, grain: f64) -> Self {
         if set.kind != Kind::Trajectory {
             return Self::FirstContact;

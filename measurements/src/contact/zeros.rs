@@ -145,13 +145,11 @@ impl Offset {
 
 impl Zeros {
     /// Reads them from the frames of `set`.
-    #[must_use]
     pub fn of(set: &MeasurementSet) -> Self {
         Self::over_grains(set, 0.0)
     }
 
     /// The same over grains of this diameter (m) at most, where the set states none.
-    #[must_use]
     pub fn over_grains(set: &MeasurementSet, unstated: f64) -> Self {
         if set.kind != Kind::Trajectory || set.all_beds().any(|bed| bed.gravity <= 0.0) {
             return Self::default();

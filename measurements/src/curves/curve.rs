@@ -76,7 +76,6 @@ pub struct Axis {
 
 impl Axis {
     /// As it stands beside a drawing.
-    #[must_use]
     pub fn label(&self) -> String {
         format!("{} ({})", self.name, self.unit)
     }
@@ -84,7 +83,6 @@ impl Axis {
 
 impl Curve {
     /// What `set` states of the error of one reading (SI).
-    #[must_use]
     pub fn stated_sigma(&self, set: &MeasurementSet) -> Option<f64> {
         (self.sigma)(&set.instrument)
     }

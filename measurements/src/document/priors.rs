@@ -26,7 +26,6 @@ pub struct ParameterPrior {
 
 impl ParameterPrior {
     /// Whether it is of the number at `path` of a model.
-    #[must_use]
     pub fn is_of(&self, path: &str) -> bool {
         path == self.name || path.strip_prefix("resistance.") == Some(self.name.as_str())
     }

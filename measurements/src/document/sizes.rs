@@ -7,18 +7,16 @@ use crate::Condition;
 
 /// A size of a body that is missing or that its shape cannot have.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum SizeError {
-    /// The set does not state it.
     #[error("`{0}` is not stated")]
     Missing(&'static str),
-    /// A value (SI) outside of what the shape can have.
     #[error("`{0}` cannot be {1}")]
     Bad(&'static str, f64),
 }
 
 impl Condition {
     /// The shape of the body, if it is registered.
-    #[must_use]
     pub fn shape_entry(&self) -> Option<&'static ShapeEntry> {
         intruders::find(&self.shape)
     }

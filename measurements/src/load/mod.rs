@@ -51,7 +51,6 @@ pub struct Loaded {
 
 impl Loaded {
     /// The contradictions of these kinds as shown to the user.
-    #[must_use]
     pub fn render_contradictions(&self, kinds: &[ContradictionKind], color: Color) -> String {
         let all = self.contradictions.iter().filter(|one| kinds.contains(&one.kind));
         let diagnostics: Vec<Diagnostic> = all.map(|one| one.diagnostic.clone()).collect();
@@ -59,7 +58,6 @@ impl Loaded {
     }
 
     /// All warnings as shown to the user.
-    #[must_use]
     pub fn render_warnings(&self, color: Color) -> String {
         render_all(&self.warnings, &self.sources, color)
     }
@@ -77,7 +75,6 @@ pub struct SetError {
 
 impl SetError {
     /// The error as shown to the user.
-    #[must_use]
     pub fn render(&self, color: Color) -> String {
         render_all(&self.diagnostics, &self.sources, color)
     }

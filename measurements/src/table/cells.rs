@@ -19,9 +19,6 @@ pub(crate) enum Cell {
 }
 
 /// The number in `text`, which is in SI or in the given unit.
-///
-/// # Errors
-/// What is wrong with it.
 pub(crate) fn number(
     text: &str,
     decimal: Decimal,

@@ -12,7 +12,6 @@ const RADIUS_STEP: f64 = 0.1;
 
 impl Sheet {
     /// The sheet as SVG on white; the same sheet gives the same bytes.
-    #[must_use]
     pub fn svg(&self) -> String {
         let (w, h) = self.size;
         let mut text = format!(

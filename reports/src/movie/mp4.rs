@@ -25,7 +25,6 @@ pub struct Beside {
 }
 
 /// Looks for `ffmpeg` in the folders of `path`, as of the variable `PATH`.
-#[must_use]
 pub fn find_ffmpeg(path: &OsStr) -> Option<Ffmpeg> {
     let programs = std::env::split_paths(path).map(|folder| folder.join("ffmpeg"));
     programs.into_iter().find(|program| program.is_file()).map(Ffmpeg)

@@ -94,7 +94,6 @@ impl Course {
     }
 
     /// Depth and speed of the first body over time, each as a line of `width` characters.
-    #[must_use]
     pub fn sparklines(&self, width: usize) -> [String; 2] {
         let states = self.bodies.first().map_or(&[][..], |body| &body.states);
         let line = |of: fn(&BodyState) -> f64| {

@@ -29,7 +29,6 @@ pub enum Seen {
 
 impl Seen {
     /// What there is to see of `run`, a folder or a log, of which `summary` and `course` tell.
-    #[must_use]
     pub fn read(run: &Path, summary: &Summary, course: &Course) -> Self {
         if summary.bed.is_none() {
             return Self::Nothing;
@@ -38,7 +37,6 @@ impl Seen {
     }
 
     /// What there is to see of `run`, which has not ended.
-    #[must_use]
     pub fn so_far(run: &Path, course: &Course) -> Self {
         if !RunFiles::so_far(run).grains.is_file() {
             return Self::Nothing;

@@ -28,9 +28,6 @@ use crate::page::{Number, Page, Part, Section};
 use crate::tables::Table;
 
 /// The page of the run that `summary`, `course` and `seen` are of.
-///
-/// # Errors
-/// If a figure cannot be drawn, or the log of grains cannot be read again.
 pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, ReportError> {
     let sections = [
         Section::new("Impact", impact::parts(seen, course)?),
@@ -55,9 +52,6 @@ pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, R
 }
 
 /// The page of the run called `name` that has not ended: as far as `course` and `seen` go.
-///
-/// # Errors
-/// If a figure cannot be drawn, or the log of grains cannot be read again.
 pub(crate) fn page_so_far(name: &str, course: &Course, seen: &Seen) -> Result<String, ReportError> {
     let panels = panels_of(&path::pictures(course, None)?);
     let motion = (!panels.is_empty()).then_some(Part::Panels(panels));

@@ -96,9 +96,6 @@ fn contact(course: &Course) -> String {
 
 /// Depth, speed and energies over time of two runs under their names: of the energies those that
 /// every program tells.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn picture(runs: [(&str, &Course); 2]) -> Result<String, PictureError> {
     let rows: Vec<(Sign, String)> = runs
         .iter()

@@ -5,7 +5,6 @@ const HEIGHTS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '�
 
 /// The curve through `points` (time and value, values from 0 on) in `width` characters, each the value
 /// at the last point of its part of the time; empty without points.
-#[must_use]
 pub fn sparkline(points: &[(f64, f64)], width: usize) -> String {
     let (Some(&(first, _)), Some(&(last, _))) = (points.first(), points.last()) else {
         return String::new();

@@ -23,7 +23,6 @@ pub struct Forces {
 
 impl Forces {
     /// Of the loads of a log.
-    #[must_use]
     pub fn of(loads: &[BodyLoads]) -> Self {
         let times =
             || loads.iter().flat_map(|load| [load.time.first(), load.time.last()]).flatten();
@@ -53,7 +52,6 @@ impl Forces {
 
     /// The mean force on a body in the span around `time` (N), in the first step that of this step: a body that just
     /// touches bears none. None if the log has no loads of it.
-    #[must_use]
     pub fn on(&self, body: &str, time: f64) -> Option<[f64; 3]> {
         let at = self.bodies.iter().position(|(name, _)| name == body)?;
         let begins = self.time.first().is_some_and(|first| time <= first - 0.5 * self.span);
@@ -65,7 +63,6 @@ impl Forces {
     }
 
     /// When the sum of all forces is greatest, and how great (s, N).
-    #[must_use]
     pub fn greatest(&self) -> Option<(f64, f64)> {
         let sums = self.time.iter().enumerate().map(|(at, time)| {
             let sum = self.bodies.iter().fold([0.0; 3], |sum, (_, force)| {
@@ -80,7 +77,6 @@ impl Forces {
     }
 
     /// The greatest magnitude of a mean force on one body (N).
-    #[must_use]
     pub fn top(&self) -> f64 {
         let all = self.bodies.iter().flat_map(|(_, force)| force);
         all.fold(0.0_f64, |top, force| top.max(norm(*force)))

@@ -12,32 +12,20 @@ use super::{Forces, Quantity};
 
 /// Why an impact cannot be seen.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum SceneError {
-    /// A log.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// A run without a log of grains.
     #[error(
         "{} is not there: this run logged no grains; run the model again with --set log.grains=true, and \
          --set log.frames_per_s=1000 for more pictures",
         path.display()
     )]
-    NotRecorded {
-        /// The log that is missing.
-        path: PathBuf,
-    },
-    /// A run of a medium that is a force law.
+    NotRecorded { path: PathBuf },
     #[error("{} is a run in a resistive medium, which has no grains to be seen", path.display())]
-    NoGrains {
-        /// The run.
-        path: PathBuf,
-    },
-    /// A log of grains without one.
+    NoGrains { path: PathBuf },
     #[error("{} holds no frame of grains", path.display())]
-    Empty {
-        /// The log.
-        path: PathBuf,
-    },
+    Empty { path: PathBuf },
 }
 
 /// What the logs of a run tell of its impact.
@@ -97,13 +85,11 @@ impl Impact {
     }
 
     /// What the colours of `quantity` end at (SI).
-    #[must_use]
     pub(crate) fn top_of(&self, quantity: Quantity) -> f64 {
         self.tops[quantity.index()]
     }
 
     /// How far (m) a grain is from where it was in the first frame.
-    #[must_use]
     pub fn displacement(&self, grain: &Grain) -> f64 {
         displacement(&self.first, grain)
     }
@@ -115,7 +101,6 @@ impl Impact {
     }
 
     /// The frame nearest to `time` (s).
-    #[must_use]
     pub fn frame_at(&self, time: f64) -> usize {
         let after = self.times.partition_point(|at| *at < time).min(self.times.len() - 1);
         match after.checked_sub(1) {
@@ -126,7 +111,6 @@ impl Impact {
 
     /// The frames at contact, at the greatest force and at the end. The second is the frame nearest to the
     /// greatest force, but not the first: that shows the bed before it has moved.
-    #[must_use]
     pub fn moments(&self) -> [usize; 3] {
         let last = self.times.len() - 1;
         let greatest = self.forces.greatest().map_or(last / 2, |(time, _)| self.frame_at(time));
@@ -134,7 +118,6 @@ impl Impact {
     }
 
     /// As many of the frames as asked for, the first and the last among them, even in time.
-    #[must_use]
     pub fn evenly(&self, n: usize) -> Vec<usize> {
         let (last, n) = (self.times.len() - 1, n.min(self.times.len()));
         match n {

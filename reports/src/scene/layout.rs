@@ -27,7 +27,6 @@ const ARROW: f64 = 0.22;
 
 /// The picture of `scene`, `width` pixels wide, its height so that lengths are the same in both directions; or of
 /// the `size` given, which the bed then fills as far as it can.
-#[must_use]
 pub fn sheet(
     (impact, view): (&Impact, &View),
     scene: &Scene,
@@ -45,7 +44,6 @@ pub fn sheet(
 }
 
 /// The height (pixels) of a picture of this `width` that `scene` fills.
-#[must_use]
 pub fn height_for(window: &super::Extent, width: u32) -> u32 {
     let inner = f64::from(width) - LEFT - RIGHT;
     (inner * window.height() / window.width() + ABOVE + BELOW).round().max(1.0) as u32

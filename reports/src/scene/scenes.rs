@@ -8,9 +8,6 @@ use super::{Extent, Force, Impact, Scene, SceneError, View};
 
 impl Impact {
     /// Hands the scene of each of these `frames`, which rise, to `visit`, until it breaks off.
-    ///
-    /// # Errors
-    /// If the log cannot be read.
     pub fn scenes(
         &self,
         view: &View,

@@ -24,13 +24,11 @@ pub struct Extent {
 
 impl Extent {
     /// Width (m).
-    #[must_use]
     pub fn width(&self) -> f64 {
         self.u[1] - self.u[0]
     }
 
     /// Height (m).
-    #[must_use]
     pub fn height(&self) -> f64 {
         self.v[1] - self.v[0]
     }
@@ -65,7 +63,6 @@ const COLUMNS: f64 = 3.0;
 
 impl View {
     /// Of `impact`, with a slice of `thickness` (m), else of one and a half mean diameters.
-    #[must_use]
     pub fn of(impact: &Impact, look: Look, thickness: Option<f64>) -> Self {
         let [x, y, z] = impact.extent;
         let path = |axis: usize| impact.reach(axis);
@@ -100,7 +97,6 @@ impl View {
     }
 
     /// A place of the log as this view has it: to the right, upward, and near.
-    #[must_use]
     pub fn place(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         match self.look {
             Look::Side => [x, z, -y],

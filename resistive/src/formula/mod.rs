@@ -49,19 +49,16 @@ impl Formula {
     }
 
     /// As it was written.
-    #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
     /// The variables that it uses, in the order in which [`Self::value`] takes their values.
-    #[must_use]
     pub fn variables(&self) -> &[String] {
         self.parsed.var_names()
     }
 
     /// Its value; NaN if `values` are not one per variable.
-    #[must_use]
     pub fn value(&self, values: &[f64]) -> f64 {
         self.parsed.eval(values).unwrap_or(f64::NAN)
     }

@@ -10,57 +10,18 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// Why a formula has no dimension, or not the one that is wanted.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum DimensionError {
-    /// Terms of a sum, or what `min` and `max` choose from, are of different dimensions.
     #[error("`{left}` is {left_is} and `{right}` is {right_is}: they cannot be {verb}")]
-    Unlike {
-        /// One of them.
-        left: String,
-        /// Its dimension, in words.
-        left_is: String,
-        /// The other.
-        right: String,
-        /// Its dimension, in words.
-        right_is: String,
-        /// `added`, `subtracted` or `compared`.
-        verb: &'static str,
-    },
-    /// A function of pure numbers is given something else.
+    Unlike { left: String, left_is: String, right: String, right_is: String, verb: &'static str },
     #[error("`{function}` wants a pure number, and `{argument}` is {argument_is}")]
-    NotPure {
-        /// Its name.
-        function: &'static str,
-        /// What it is given.
-        argument: String,
-        /// The dimension of that, in words.
-        argument_is: String,
-    },
-    /// An exponent that is no pure number.
+    NotPure { function: &'static str, argument: String, argument_is: String },
     #[error("the exponent `{exponent}` is {exponent_is}; expected a pure number")]
-    Exponent {
-        /// The exponent.
-        exponent: String,
-        /// Its dimension, in words.
-        exponent_is: String,
-    },
-    /// A power whose dimension would change with the state.
+    Exponent { exponent: String, exponent_is: String },
     #[error("`{base}` is {base_is}, so its exponent must be a number, and `{exponent}` changes")]
-    ChangingExponent {
-        /// What is raised.
-        base: String,
-        /// Its dimension, in words.
-        base_is: String,
-        /// The exponent.
-        exponent: String,
-    },
-    /// The whole is something else than what is wanted.
+    ChangingExponent { base: String, base_is: String, exponent: String },
     #[error("this is {found}; expected {wanted}")]
-    Whole {
-        /// Its dimension, in words.
-        found: String,
-        /// What it should be, in words.
-        wanted: String,
-    },
+    Whole { found: String, wanted: String },
 }
 
 /// How tightly a text holds together when it becomes part of a larger one.

@@ -35,63 +35,38 @@ pub const FUNCTIONS: &[(&str, usize)] = &[
 
 /// What is wrong at a place of a formula.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum SyntaxError {
-    /// There is nothing.
     #[error("expected a formula")]
     Empty,
-    /// A character that no formula has.
     #[error("`{0}` has no meaning here")]
     Character(char),
-    /// A number beyond what can be represented.
     #[error("this number is too large")]
     TooLarge,
-    /// A name that is not known.
     #[error("`{unknown}` is not known here; known: {}", known.join(", "))]
-    Unknown {
-        /// What stands there.
-        unknown: String,
-        /// What may.
-        known: Vec<String>,
-    },
-    /// A function without its argument.
+    Unknown { unknown: String, known: Vec<String> },
     #[error("`{0}` is a function: write {0}(…)")]
     Function(String),
-    /// A function with too few or too many arguments.
     #[error("`{name}` takes {wanted}")]
-    Arguments {
-        /// The function.
-        name: String,
-        /// `one value` or `two values`.
-        wanted: &'static str,
-    },
-    /// `min` or `max` in the second argument of another.
+    Arguments { name: String, wanted: &'static str },
     #[error("put the inner `min` or `max` first: max(min(a, b), c)")]
     SecondChoice,
-    /// An operator, a closing parenthesis or the end where a value should be.
     #[error("a value is missing here")]
     NoValue,
-    /// Two values next to each other.
     #[error("an operator is missing here")]
     NoOperator,
-    /// A parenthesis that is not closed.
     #[error("this parenthesis is not closed")]
     Open,
-    /// A parenthesis that was not opened.
     #[error("this parenthesis was not opened")]
     Unopened,
-    /// A sign before a power.
     #[error("a sign before a power can be read in two ways: write -(a^b) or (-a)^b")]
     SignedPower,
-    /// A power of a power.
     #[error("a power of a power can be read in two ways: write (a^b)^c or a^(b^c)")]
     TwicePower,
-    /// More than [`MOST_NODES`].
     #[error("a formula has at most {MOST_NODES} numbers, names and operators")]
     TooLong,
-    /// More than [`MOST_DEPTH`].
     #[error("at most {MOST_DEPTH} parentheses stand inside each other")]
     TooDeep,
-    /// Something that the reader of formulas found.
     #[error("{0}")]
     Other(String),
 }
@@ -107,7 +82,6 @@ pub struct FormulaError {
 }
 
 /// Whether a variable cannot have this name: it is a function's, or would be read as one.
-#[must_use]
 pub fn is_reserved(name: &str) -> bool {
     name == "pi"
         || name.starts_with("min")

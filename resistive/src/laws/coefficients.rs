@@ -13,7 +13,6 @@ pub struct Coefficients {
 
 impl Coefficients {
     /// Plain numbers.
-    #[must_use]
     pub fn new(numbers: ParamTable) -> Self {
         Self { numbers, functions: Vec::new() }
     }
@@ -30,19 +29,16 @@ impl Coefficients {
     ///
     /// # Panics
     /// If the table was not filled from the specs of whoever asks.
-    #[must_use]
     pub fn get(&self, key: &str) -> f64 {
         self.numbers.get(key)
     }
 
     /// The function of depth that stands for `key`, if one does.
-    #[must_use]
     pub fn function(&self, key: &str) -> Option<&Expression> {
         self.functions.iter().find(|(name, _)| *name == key).map(|(_, function)| function)
     }
 
     /// Whether `key` is a function of depth.
-    #[must_use]
     pub fn is_function(&self, key: &str) -> bool {
         self.function(key).is_some()
     }
@@ -90,13 +86,11 @@ impl Expression {
     }
 
     /// As it was written.
-    #[must_use]
     pub fn text(&self) -> &str {
         self.formula.text()
     }
 
     /// Whether it uses `variable`.
-    #[must_use]
     pub fn uses(&self, variable: &str) -> bool {
         self.formula.variables().iter().any(|name| name == variable)
     }
@@ -111,7 +105,6 @@ impl Expression {
 
     /// Its value; `variables` hold at least those that it uses and that are not bound, and NaN stands
     /// for any other.
-    #[must_use]
     pub fn eval(&self, variables: &[(&str, f64)]) -> f64 {
         let values: Vec<f64> = self
             .formula

@@ -24,7 +24,6 @@ pub enum Effect {
 
 impl Effect {
     /// The listed effect called `name`.
-    #[must_use]
     pub fn listed(name: &str) -> Option<Self> {
         let entry = find_resistance(name)?;
         matches!(entry.role, Role::Effect(_)).then(|| Self::with(entry, &[]))
@@ -43,7 +42,6 @@ impl Effect {
     }
 
     /// The other forms of it that its entry names, each with what data must contain to tell it from the others.
-    #[must_use]
     pub fn other_forms(&self) -> Vec<(Self, &'static [Needs])> {
         match self {
             Self::Listed(entry, _) => entry
@@ -56,7 +54,6 @@ impl Effect {
     }
 
     /// What it takes beside its amplitude and differs from the defaults (SI): nothing for the form that is listed.
-    #[must_use]
     pub fn form(&self) -> Vec<(&'static str, f64)> {
         let Self::Listed(entry, given) = self else { return Vec::new() };
         let is_default = |key: &str, value: f64| {
@@ -67,7 +64,6 @@ impl Effect {
     }
 
     /// Its name: in a ranking, in the names of files, in `effect.NAME.q`.
-    #[must_use]
     pub fn name(&self) -> &str {
         match self {
             Self::Listed(entry, _) => entry.name,
@@ -76,7 +72,6 @@ impl Effect {
     }
 
     /// Its amplitude and what that may be.
-    #[must_use]
     pub fn amplitude(&self) -> &ParamSpec {
         match self {
             Self::Listed(entry, _) => &entry.params[0],
@@ -85,7 +80,6 @@ impl Effect {
     }
 
     /// Unit of its amplitude; "1" where it is a pure number.
-    #[must_use]
     pub fn unit(&self) -> String {
         match self {
             Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }, _) => {
@@ -98,7 +92,6 @@ impl Effect {
     }
 
     /// What data must contain for it to act at all.
-    #[must_use]
     pub fn visible(&self) -> Vec<Needs> {
         match self {
             Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }, _) => {
@@ -110,7 +103,6 @@ impl Effect {
     }
 
     /// Its term of the force with amplitude `q` (SI) on a body that comes as `approach` says.
-    #[must_use]
     pub fn build(&self, q: f64, approach: Approach) -> Box<dyn ResistanceLaw> {
         match self {
             Self::Listed(entry, given) => {
@@ -123,7 +115,6 @@ impl Effect {
     }
 
     /// Sorts effects as they act: those of the table in its order, then the others by their names.
-    #[must_use]
     pub fn rank(&self) -> (usize, &str) {
         let listed = RESISTANCE_LAWS.iter().position(|entry| entry.name == self.name());
         (listed.unwrap_or(RESISTANCE_LAWS.len()), self.name())

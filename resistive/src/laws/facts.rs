@@ -109,7 +109,6 @@ impl Needs {
 
 impl Confounder {
     /// "yield-stress by two diameters or frames before impact".
-    #[must_use]
     pub fn describe(&self) -> String {
         let needs: Vec<&str> = self.any_of.iter().map(|need| need.describe()).collect();
         format!("{} by {}", self.effect, needs.join(" or "))

@@ -77,7 +77,6 @@ pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
 ];
 
 /// The baseline or effect called `name`.
-#[must_use]
 pub fn find_resistance(name: &str) -> Option<&'static ResistanceEntry> {
     RESISTANCE_LAWS.iter().find(|entry| entry.name == name).copied()
 }

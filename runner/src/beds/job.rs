@@ -56,7 +56,6 @@ impl Job {
     }
 
     /// Work that it takes (grain-steps), if it lasts as long as expected.
-    #[must_use]
     pub fn work(&self) -> f64 {
         let grains = self.model.grains();
         let step = grains.and_then(|grains| Some((grains.n_grains(), grains.time_step().ok()?)));

@@ -48,9 +48,6 @@ pub trait Impacts {
     fn n_workers(&self) -> usize;
 
     /// Grain-steps per second of one of them, on beds like that of `model`.
-    ///
-    /// # Errors
-    /// If the bed of the model cannot be built.
     fn rate(&self, model: GrainModel<'_>) -> Result<f64, CampaignError>;
 
     /// The records of `jobs`, in their order, and the same however many workers there are. An impact

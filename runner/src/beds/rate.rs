@@ -40,7 +40,6 @@ impl Rate {
     }
 
     /// Grain-steps per second of one thread, if anything was run.
-    #[must_use]
     pub(super) fn per_second(&self) -> Option<f64> {
         (self.time > 0.0 && self.work > 0.0).then(|| self.work / self.time)
     }
@@ -55,9 +54,6 @@ impl Rate {
 
 /// Grain-steps per second of one thread: as the last campaign with this cache had it, else a look at how
 /// fast grains of `model` fall.
-///
-/// # Errors
-/// If the bed of the model cannot be built.
 pub(super) fn grain_steps_per_second(
     cache: &Path,
     model: GrainModel<'_>,

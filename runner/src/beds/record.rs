@@ -152,7 +152,6 @@ fn crater_of(simulation: &Simulation) -> Option<[f64; 2]> {
 
 impl Record {
     /// Depth and range (m) at `time` (s) since first contact; behind the end the last ones.
-    #[must_use]
     pub fn since_contact(&self, time: f64) -> (f64, f64) {
         let place = time / self.interval;
         let at = place as usize;
@@ -166,7 +165,6 @@ impl Record {
     }
 
     /// Force (N) that a push meets `depth` (m) deep: linear between samples, nothing above the first, the last below all.
-    #[must_use]
     pub fn force_at(&self, depth: f64) -> f64 {
         // A push sinks at one speed, so that depths rise.
         let after = self.depth.partition_point(|&one| one < depth);
@@ -182,7 +180,6 @@ impl Record {
     }
 
     /// Depth and range (m) at `times` (s) since first contact.
-    #[must_use]
     pub fn path(&self, times: &[f64]) -> Vec<(f64, f64)> {
         times.iter().map(|&time| self.since_contact(time)).collect()
     }

@@ -26,53 +26,24 @@ const LOCK: &str = ".lock";
 
 /// Why a folder of a campaign cannot be used.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum FolderError {
-    /// The system refused.
     #[error("cannot {action} {}: {source}", path.display())]
-    Io {
-        /// What was being done.
-        action: &'static str,
-        /// To which file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
-    /// Another process runs the campaign.
+    Io { action: &'static str, path: PathBuf, source: io::Error },
     #[error("{} is being run by another process", folder.display())]
-    Busy {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// Another plan is there.
+    Busy { folder: PathBuf },
     #[error(
         "{} holds the plan of another campaign, of other models or of another version; a plan never \
          changes: choose another --out",
         folder.display()
     )]
-    OtherPlan {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// Something that is not ours is there.
+    OtherPlan { folder: PathBuf },
     #[error("{} holds files and no {PLAN}; choose another --out", folder.display())]
-    NotOurs {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// There is no plan.
+    NotOurs { folder: PathBuf },
     #[error("{} holds no {PLAN}: no campaign was planned there", folder.display())]
-    NoPlan {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// A file that is not what its name says.
+    NoPlan { folder: PathBuf },
     #[error("{} cannot be read: {why}", path.display())]
-    Misunderstood {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
+    Misunderstood { path: PathBuf, why: String },
 }
 
 /// The folder of a campaign.
@@ -89,13 +60,11 @@ pub struct Held {
 
 impl Folder {
     /// The folder at `path`, whatever is there.
-    #[must_use]
     pub fn new(path: &Path) -> Self {
         Self { path: path.to_owned() }
     }
 
     /// Where it is.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -153,15 +122,11 @@ impl Folder {
     }
 
     /// The folder of the point `hash`.
-    #[must_use]
     pub fn of_point(&self, hash: &str) -> PathBuf {
         self.path.join(POINTS_FOLDER).join(hash)
     }
 
     /// What came of the point `hash`; `None` if it is not done.
-    ///
-    /// # Errors
-    /// If it cannot be read.
     pub fn done(&self, hash: &str) -> Result<Option<Done>, FolderError> {
         read_json(&self.of_point(hash).join(DONE))
     }

@@ -92,7 +92,6 @@ impl Pace {
     }
 
     /// As it was measured before with the cache in `folder`, if it was.
-    #[must_use]
     pub fn kept(model: GrainModel<'_>, folder: &Path) -> Option<Self> {
         let text = fs::read_to_string(file_of(model, folder)).ok()?;
         serde_json::from_str(&text).ok()
@@ -125,14 +124,12 @@ impl Pace {
     }
 
     /// Time (s) for preparing a bed of so many `grains` on so many `threads`.
-    #[must_use]
     pub fn preparation(&self, grains: u64, threads: usize) -> f64 {
         let work = self.settling_steps as f64 * grains as f64;
         WHOLE_OVER_COLUMN * work / (self.settling_per_s * speed_up(grains, threads))
     }
 
     /// Time (s) for so many `steps` of an impact on it, with its log.
-    #[must_use]
     pub fn impact(&self, grains: u64, steps: u64, threads: usize) -> f64 {
         let per_step = grains as f64 / (self.resting_per_s * speed_up(grains, threads));
         steps as f64 * (per_step + LOG_PER_STEP)
@@ -140,7 +137,6 @@ impl Pace {
 }
 
 /// Whether the bed of `model` is prepared already, in the cache in `folder`.
-#[must_use]
 pub fn is_prepared(model: GrainModel<'_>, folder: &Path) -> bool {
     bed_file(folder, &bed_key(model)).is_file()
 }

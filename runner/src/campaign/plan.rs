@@ -68,7 +68,6 @@ pub struct Planned {
 
 impl Plan {
     /// How many points are not the same as one before.
-    #[must_use]
     pub(crate) fn n_distinct(&self) -> usize {
         self.points.iter().map(|point| &point.hash).collect::<BTreeSet<_>>().len()
     }
@@ -158,7 +157,6 @@ impl Planned {
     }
 
     /// Memory (byte) of the `n` largest points at once.
-    #[must_use]
     pub fn memory(&self, n: usize) -> u64 {
         let mut all: Vec<u64> = self.needs.iter().map(|need| need.memory).collect();
         all.sort_unstable_by(|a, b| b.cmp(a));
@@ -176,7 +174,6 @@ impl Planned {
 }
 
 /// Key and value of what `--set` takes.
-#[must_use]
 pub fn split(assignment: &str) -> (&str, &str) {
     assignment.split_once('=').unwrap_or((assignment, ""))
 }

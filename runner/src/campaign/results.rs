@@ -60,7 +60,6 @@ impl Results {
     }
 
     /// How far it has come.
-    #[must_use]
     pub fn counts(&self) -> Counts {
         let mut counts = Counts { points: self.outcomes.len(), ..Counts::default() };
         for outcome in &self.outcomes {
@@ -80,7 +79,6 @@ impl Results {
     }
 
     /// The same as JSON: counts, and the points that failed with why.
-    #[must_use]
     pub fn to_json(&self) -> Value {
         let Counts { points, done, failed, begun, waiting } = self.counts();
         let failures: Vec<Value> = self
@@ -104,7 +102,6 @@ impl Results {
 
 impl Outcome {
     /// Its numbers, if it is done.
-    #[must_use]
     pub fn headline(&self) -> Option<&Headline> {
         match self {
             Self::Ended(done) => done.headline.as_ref(),
@@ -113,7 +110,6 @@ impl Outcome {
     }
 
     /// Why it failed, if it did.
-    #[must_use]
     pub fn error(&self) -> Option<&str> {
         match self {
             Self::Ended(done) => done.error.as_deref(),
@@ -122,7 +118,6 @@ impl Outcome {
     }
 
     /// How far it has come, in a word.
-    #[must_use]
     pub fn word(&self) -> &'static str {
         match self {
             Self::Ended(done) => match done.status {
@@ -137,7 +132,6 @@ impl Outcome {
 
 impl Counts {
     /// Whether nothing is left to do.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.done + self.failed == self.points
     }

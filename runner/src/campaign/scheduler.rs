@@ -30,11 +30,10 @@ pub struct Task {
 
 /// Why points are not submitted.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum SubmitError {
-    /// The scheduler.
     #[error(transparent)]
     Scheduler(#[from] SchedulerError),
-    /// The folder of the campaign.
     #[error(transparent)]
     Folder(#[from] FolderError),
 }

@@ -53,7 +53,6 @@ pub enum Values {
 }
 
 /// The keys that differ between points, in the order in which points set them.
-#[must_use]
 pub fn varied(results: &Results) -> Vec<Varied> {
     let points = &results.plan.points;
     let mut keys: Vec<&str> = Vec::new();
@@ -77,7 +76,6 @@ pub fn varied(results: &Results) -> Vec<Varied> {
 }
 
 /// The table: which point it is, what was varied, how it ended, and its numbers.
-#[must_use]
 pub fn columns(results: &Results) -> Vec<TableColumn> {
     let points = &results.plan.points;
     let texts =
@@ -150,7 +148,6 @@ impl Varied {
     }
 
     /// The value at the point `index` of the plan, as a reader wants it.
-    #[must_use]
     pub fn shown(&self, index: usize) -> String {
         let number = |number: f64| match &self.unit {
             Some(unit) => format!("{} {unit}", six_digits(number)),

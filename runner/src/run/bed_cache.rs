@@ -38,13 +38,11 @@ pub struct PreparedBed {
 }
 
 /// The key of the bed of `model`.
-#[must_use]
 pub fn bed_key(model: GrainModel<'_>) -> [u8; 32] {
     result_key(model.bed_key_text())
 }
 
 /// Where the bed of `key` lies in the cache below `folder`.
-#[must_use]
 pub fn bed_file(folder: &Path, key: &[u8; 32]) -> PathBuf {
     folder.join("beds").join(format!("{}.bed", blake3::Hash::from_bytes(*key).to_hex()))
 }

@@ -16,7 +16,6 @@ const THICKNESS: f64 = 0.1;
 
 /// An intruder of this `shape`, or of a chain each of its links, as it is drawn about its centre of
 /// mass; `params` are SI values that fill those of the shape.
-#[must_use]
 pub fn shape_of(shape: &ShapeEntry, params: &ParamTable, space: Space) -> LoggedShape {
     match ((shape.build)(params, space).drawing, space) {
         (Drawing::Ball(radius), Space::Spatial) => LoggedShape::Sphere { radius },

@@ -36,7 +36,6 @@ use folder::{Found, OutputFolder};
 const RESULTS: u32 = 3;
 
 /// The key of everything that follows from `inputs`, by this version of the engine.
-#[must_use]
 pub fn result_key(inputs: &str) -> [u8; 32] {
     let text = format!("{} {FORMAT} {RESULTS}\n{inputs}", env!("CARGO_PKG_VERSION"));
     *blake3::hash(text.as_bytes()).as_bytes()
@@ -100,7 +99,6 @@ impl RunError {
     }
 
     /// Whether the input is to blame, and not what happened on the way.
-    #[must_use]
     pub fn is_bad_input(&self) -> bool {
         matches!(
             self,

@@ -7,37 +7,14 @@ use thiserror::Error;
 
 /// Why tasks are not submitted.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum SchedulerError {
-    /// It is not installed, or cannot be started.
     #[error("cannot start `{program}`: {source}; {hint}")]
-    NotThere {
-        /// The program.
-        program: &'static str,
-        /// Why not.
-        source: io::Error,
-        /// What to do.
-        hint: &'static str,
-    },
-    /// It refuses.
+    NotThere { program: &'static str, source: io::Error, hint: &'static str },
     #[error("`{program}` refuses: {why}")]
-    Refused {
-        /// The program.
-        program: &'static str,
-        /// What it says.
-        why: String,
-    },
-    /// A path that no script can hold.
+    Refused { program: &'static str, why: String },
     #[error("{} is not UTF-8, and a script cannot name it", path.display())]
-    NotText {
-        /// The path.
-        path: PathBuf,
-    },
-    /// The script cannot be written.
+    NotText { path: PathBuf },
     #[error("cannot write {}: {source}", path.display())]
-    Script {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
+    Script { path: PathBuf, source: io::Error },
 }

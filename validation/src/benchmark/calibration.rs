@@ -23,7 +23,6 @@ pub struct Bin {
 }
 
 /// Predicted against observed over all of `trials` that hide one listed effect.
-#[must_use]
 pub fn calibration(trials: &[Trial]) -> Vec<Bin> {
     let mut bins = [(0.0, Share::default()); BINS];
     for trial in trials {
@@ -40,7 +39,6 @@ pub fn calibration(trials: &[Trial]) -> Vec<Bin> {
 }
 
 /// As rows of the tables.
-#[must_use]
 pub fn rows(bins: &[Bin]) -> Vec<Score> {
     bins.iter()
         .map(|bin| Score {
@@ -52,9 +50,6 @@ pub fn rows(bins: &[Bin]) -> Vec<Score> {
 }
 
 /// As SVG: observed over predicted with intervals of 95 %; the line is a prediction that holds.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn picture(bins: &[Bin]) -> Result<String, PictureError> {
     let mut text = String::new();
     draw(&mut text, bins).map_err(|error| PictureError(error.to_string()))?;

@@ -9,13 +9,11 @@ pub struct Chance(Pcg64);
 
 impl Chance {
     /// The source with number `seed`.
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(Pcg64::seed_from_u64(seed))
     }
 
     /// Another source, of which this one draws nothing.
-    #[must_use]
     pub fn apart(&self) -> Self {
         let mut copy = self.0.clone();
         Self::new(copy.random::<u64>() ^ 0x9e37_79b9_7f4a_7c15)

@@ -64,7 +64,6 @@ pub struct Design {
 impl Design {
     /// Two diameters, four masses, five angles, spins of both signs, four packings, three depths of
     /// the bed: 18 conditions and 4 held out, five runs each.
-    #[must_use]
     pub fn full() -> Self {
         Self {
             settings: FULL.map(setting).to_vec(),
@@ -79,7 +78,6 @@ impl Design {
     }
 
     /// One sphere without spin, six speeds at three angles, one packing, one depth of the bed.
-    #[must_use]
     pub fn one_intruder() -> Self {
         let fitted = [90.0, 60.0, 35.0].into_iter().flat_map(|angle| {
             [0.6, 1.2, 1.8, 2.4, 3.0, 3.5].map(|speed| (speed, angle, 0, 0.0, 0.59, 0.30))
@@ -90,7 +88,6 @@ impl Design {
     }
 
     /// Everything straight down and without spin.
-    #[must_use]
     pub fn vertical() -> Self {
         let mut design = Self::full();
         for setting in &mut design.settings {
@@ -100,7 +97,6 @@ impl Design {
     }
 
     /// Stopping time, final depth and final range alone.
-    #[must_use]
     pub fn scalars() -> Self {
         Self { kind: Kind::Scalar, ..Self::full() }
     }

@@ -40,7 +40,6 @@ impl Share {
 /// Probability that two methods which are equally good differ as much as here or more, where the first
 /// alone is right `first` times and the second alone `second` times (McNemar 1947, Psychometrika 12,
 /// 153, with the binomial distribution itself).
-#[must_use]
 pub fn mcnemar(first: usize, second: usize) -> f64 {
     let n = first + second;
     // The first term is 1/2ⁿ, each next one is larger by (n − k)/(k + 1).
@@ -54,7 +53,6 @@ pub fn mcnemar(first: usize, second: usize) -> f64 {
 }
 
 /// The quantile `share` of `values`, linear between two; none of none.
-#[must_use]
 pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -66,7 +64,6 @@ pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
 /// Interval of at least 95 % of the median of what `values` are drawn from, whatever its distribution: the two values
 /// between which it lies as a coin would have it (Conover 1999, Practical Nonparametric Statistics, section 3.2). None of
 /// fewer than six.
-#[must_use]
 pub fn interval_of_median(values: &[f64]) -> Option<[f64; 2]> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -7,7 +7,6 @@ use super::scores::{Measured, Reached, Score, Target, scores};
 use super::trial::{Answer, Outcome, Trial};
 
 /// Scores, calibration and every trial.
-#[must_use]
 pub fn report(trials: &[Trial], bins: &[Bin]) -> Value {
     let mut all = scores(trials);
     all.extend(rows(bins));

@@ -63,16 +63,12 @@ impl Kept {
     }
 
     /// The trial of `plan`, if it is there.
-    #[must_use]
     pub fn find(&self, plan: &Plan) -> Option<Trial> {
         let outcome = self.known.get(&key(plan))?.clone();
         Some(Trial { plan: plan.clone(), outcome })
     }
 
     /// Keeps a trial.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub fn keep(&self, trial: &Trial) -> Result<(), KeptError> {
         let failed = |why: String| KeptError { path: self.path.clone(), why };
         let line = Line { trial: key(&trial.plan), outcome: trial.outcome.clone() };

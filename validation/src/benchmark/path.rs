@@ -21,14 +21,12 @@ const LONGEST: f64 = 2.0;
 
 /// Why a world gives no measurements.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum WorldError {
-    /// Some sphere never stops.
     #[error("a sphere does not stop")]
     Endless,
-    /// Some force is not finite.
     #[error("a path is not finite")]
     NotFinite,
-    /// No amplitude within its range shifts the resting points so far.
     #[error("no amplitude of {0} is as strong as that")]
     TooStrong(&'static str),
 }

@@ -168,19 +168,16 @@ impl Row {
 
 impl Size {
     /// The grid of the tables.
-    #[must_use]
     pub fn full() -> Self {
         Self { draws: 3, rows: Row::TABLES.to_vec() }
     }
 
     /// A third of the main rows: a first impression in two minutes.
-    #[must_use]
     pub fn quick() -> Self {
         Self { draws: 1, rows: vec![Row::Singles, Row::Nulls, Row::Unlisted] }
     }
 
     /// The worlds to draw. A world depends on its place in the grid, not on the size of it.
-    #[must_use]
     pub fn plans(&self, seeds: Seeds) -> Vec<Plan> {
         self.rows.iter().flat_map(|&row| self.row(Drawer { row, seeds })).collect()
     }

@@ -16,7 +16,6 @@ use super::trial::{Answer, Trial};
 type Answered<'a> = (&'a Trial, &'a Answer);
 
 /// Every row, but of sets that hide errors of the apparatus, from `trials` of any rows of the benchmark; rows without trials are left out.
-#[must_use]
 pub fn scores(trials: &[Trial]) -> Vec<Score> {
     let answered = |row: Row| -> Vec<Answered<'_>> {
         let is_effect = |trial: &&Trial| !trial.plan.hidden.iter().any(|one| one.is_of_apparatus());

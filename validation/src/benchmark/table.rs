@@ -13,7 +13,6 @@ use super::trial::{Outcome, Trial};
 use super::{calibration, scores};
 
 /// Everything that was measured in `trials`.
-#[must_use]
 pub fn report(trials: &[Trial], bins: &[Bin]) -> String {
     let mut rows = scores::scores(trials);
     rows.extend(calibration::rows(bins));
@@ -32,7 +31,6 @@ pub fn report(trials: &[Trial], bins: &[Bin]) -> String {
 }
 
 /// What can be hidden, and how its law stands to the candidate of the same name.
-#[must_use]
 pub fn worlds() -> String {
     let rows = FORMS.iter().map(|form| {
         let kinship = match form.kinship {
@@ -46,7 +44,6 @@ pub fn worlds() -> String {
 }
 
 /// The rows, each with its interval (of a spread, that of the median), its target and what became of it.
-#[must_use]
 pub fn score_table(rows: &[Score]) -> String {
     let cells = rows.iter().map(|row| {
         let (value, n, interval) = match &row.measured {

@@ -134,7 +134,6 @@ pub fn draw(plan: &Plan) -> Result<(Nature, MeasurementSet), WorldError> {
 
 impl Trial {
     /// Draws the world of `plan`, measures in it, and has `model` diagnosed by the measurements.
-    #[must_use]
     pub fn of(plan: Plan, model: &Model) -> Self {
         let unknown = plan
             .hidden
@@ -151,13 +150,11 @@ impl Trial {
     }
 
     /// Whether the effect `id` is hidden.
-    #[must_use]
     pub fn hides(&self, id: &str) -> bool {
         self.plan.hidden.iter().any(|hidden| hidden.id() == id)
     }
 
     /// The answer, if there is one.
-    #[must_use]
     pub fn answer(&self) -> Option<&Answer> {
         match &self.outcome {
             Outcome::Answered(answer) => Some(answer),

@@ -71,7 +71,6 @@ pub struct Estimate {
 
 impl Estimate {
     /// A number and its standard error.
-    #[must_use]
     pub fn new(value: f64, error: f64) -> Self {
         Self { value, error }
     }
@@ -136,7 +135,6 @@ pub struct Known {
 
 impl Known {
     /// Whether it covers ours being `ratio` times the published number, which is known to within `margin`.
-    #[must_use]
     pub fn covers(&self, ratio: f64, margin: f64) -> bool {
         ratio + margin >= self.ratio[0] && ratio - margin <= self.ratio[1]
     }
@@ -144,7 +142,6 @@ impl Known {
 
 /// Half a band, endless where it is not known: without any freedom left, an infinite factor times an error of nought is
 /// not a number.
-#[must_use]
 pub fn or_endless(half: f64) -> f64 {
     if half.is_nan() { f64::INFINITY } else { half }
 }
@@ -171,7 +168,6 @@ const TOO_FEW: &str = "the scatter of the impacts that were run allows either";
 
 impl Check {
     /// A number that has to come out as published within `band`; undecided where zero would pass as well.
-    #[must_use]
     pub fn number(
         what: impl Into<String>,
         published: Estimate,
@@ -195,7 +191,6 @@ impl Check {
     /// A mean deviation from a curve, to which the scatter of ours alone adds up to `by_scatter`
     /// ([`regression::deviation_by_scatter`](super::regression::deviation_by_scatter)): it passes within `band`, and
     /// fails where that scatter does not explain what is beyond; between, it is undecided.
-    #[must_use]
     pub fn deviation(
         what: impl Into<String>,
         published: impl Into<String>,
@@ -209,7 +204,6 @@ impl Check {
     }
 
     /// A number that must not be greater than `band` is wide.
-    #[must_use]
     pub fn at_most(
         what: impl Into<String>,
         published: impl Into<String>,
@@ -247,7 +241,6 @@ impl Check {
 
     /// A number that the source has positive, known to within `band`: it passes where it is positive all through the band and
     /// fails where it is negative all through it; between, it is undecided.
-    #[must_use]
     pub fn positive(
         what: impl Into<String>,
         published: impl Into<String>,
@@ -263,7 +256,6 @@ impl Check {
 
     /// A number that the source has zero, known to within `band`: it fails beyond. Within, it passes where the band does
     /// not reach `contrary`, the least number that contradicts the source's words; it is undecided where it does.
-    #[must_use]
     pub fn zero(
         what: impl Into<String>,
         published: impl Into<String>,
@@ -280,7 +272,6 @@ impl Check {
     }
 
     /// A statement that `holds` or does not, as `ours` shows by the test `decided`.
-    #[must_use]
     pub fn trend(
         what: impl Into<String>,
         (published, ours): (&str, String),
@@ -298,7 +289,6 @@ impl Check {
     }
 
     /// What has no answer, with the `verdict` that says of what kind, and `why`.
-    #[must_use]
     pub fn unanswered(
         what: impl Into<String>,
         published: &str,
@@ -316,13 +306,11 @@ impl Check {
     }
 
     /// What the source does not give, or what of it is lost.
-    #[must_use]
     pub fn not_published(what: impl Into<String>, published: &str, why: &str) -> Self {
         Self::unanswered(what, published, Verdict::NotPublished, why)
     }
 
     /// What there are too few impacts for.
-    #[must_use]
     pub fn undecided(what: impl Into<String>, published: &str, why: &str) -> Self {
         Self::unanswered(what, published, Verdict::Undecided, why)
     }

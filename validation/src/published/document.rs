@@ -18,7 +18,6 @@ pub struct Judged {
 
 impl Judged {
     /// Judges `row`. One of whose impacts none was run yet has nothing to be held against, and does not fail.
-    #[must_use]
     pub fn by(row: &'static Row, laboratory: &Laboratory<'_>) -> Self {
         let findings = match (row.judge)(laboratory) {
             Err(why @ PublishedError::NotYet) => {
@@ -30,20 +29,17 @@ impl Judged {
     }
 
     /// The verdict; a row that could not be run fails.
-    #[must_use]
     pub fn verdict(&self) -> Verdict {
         self.findings.as_ref().map_or(Verdict::Fail, Findings::verdict)
     }
 
     /// How many of its checks have `verdict`.
-    #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
         let checks = self.findings.iter().flat_map(|findings| &findings.checks);
         checks.filter(|check| check.verdict == verdict).count()
     }
 
     /// How it was run.
-    #[must_use]
     pub fn how(&self, effort: Effort) -> &'static str {
         self.row.how[usize::from(effort == Effort::Full)]
     }
@@ -71,7 +67,6 @@ impl Judged {
 }
 
 /// Everything, as `validation.json` has it.
-#[must_use]
 pub fn to_json(judged: &[Judged], effort: Effort) -> Value {
     json!({
         "effort": word(effort),
@@ -81,7 +76,6 @@ pub fn to_json(judged: &[Judged], effort: Effort) -> Value {
 }
 
 /// Everything, as `REPORT.md` has it.
-#[must_use]
 pub fn markdown(judged: &[Judged], effort: Effort) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -90,9 +84,6 @@ pub fn markdown(judged: &[Judged], effort: Effort) -> String {
 }
 
 /// Every check as a line of CSV: `row, check, published, ours, band, verdict, cause`.
-///
-/// # Errors
-/// None that a string can cause.
 pub fn checks_csv(judged: &[Judged]) -> Result<String, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["row", "check", "published", "ours", "band", "verdict", "cause"])?;
@@ -117,7 +108,6 @@ fn word(effort: Effort) -> &'static str {
 }
 
 /// How many rows have each verdict: `14 rows: 5 pass, 1 undecided`.
-#[must_use]
 pub fn tally(judged: &[Judged]) -> String {
     let count = |verdict| judged.iter().filter(|one| one.verdict() == verdict).count();
     tally_of(judged.len(), &Verdict::ALL.map(|verdict| (verdict, count(verdict))))

@@ -43,9 +43,6 @@ pub struct Laboratory<'a> {
 impl Laboratory<'_> {
     /// The records of `jobs`, in their order: run now where they are not kept, or left out. None of an impact whose
     /// steps cannot be trusted.
-    ///
-    /// # Errors
-    /// If one cannot be run.
     pub fn impacts(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
         match self.missing {
             Missing::Run => self.place.run(jobs),
@@ -54,7 +51,6 @@ impl Laboratory<'_> {
     }
 
     /// The first of a pair when quick, else the second.
-    #[must_use]
     pub fn quick_or_full<T>(&self, quick: T, full: T) -> T {
         match self.effort {
             Effort::Quick => quick,

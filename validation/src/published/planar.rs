@@ -45,13 +45,11 @@ pub struct Fall {
 
 impl Fall {
     /// At `speed` (m/s) on every one of [`PLACES`] of a bed.
-    #[must_use]
     pub fn everywhere(bed: Bed, speed: f64) -> [Self; 3] {
         PLACES.map(|share| Self { bed, speed, x: share * WIDTH })
     }
 
     /// At `speed` (m/s) on a deep bed, with `gap` (m) between the disc and the left, then the right side.
-    #[must_use]
     pub fn beside(speed: f64, gap: f64) -> [Self; 2] {
         let x = 0.5 * DIAMETER + gap;
         [x, WIDTH - x].map(|x| Self { bed: Bed::Deep, speed, x })

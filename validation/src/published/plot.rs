@@ -44,9 +44,6 @@ pub struct Points {
 
 impl Plot {
     /// As SVG.
-    ///
-    /// # Errors
-    /// If the drawing fails.
     pub fn draw(&self) -> Result<String, PictureError> {
         let columns = self.panels.len().clamp(1, ACROSS);
         let rows = self.panels.len().div_ceil(columns).max(1);

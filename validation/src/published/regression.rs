@@ -35,20 +35,17 @@ pub struct Fitted {
 
 impl Fitted {
     /// Standard error of coefficient `at`.
-    #[must_use]
     pub fn error(&self, at: usize) -> f64 {
         self.covariance[(at, at)].max(0.0).sqrt()
     }
 
     /// How many of its standard errors hold a coefficient as surely as so many `sigmas` do where the scatter is
     /// known: Student's t.
-    #[must_use]
     pub fn as_surely_as(&self, sigmas: f64) -> f64 {
         self.freedom.map_or(sigmas, |freedom| student(sigmas, freedom))
     }
 
     /// Correlation of the first two coefficients.
-    #[must_use]
     pub fn correlation(&self) -> f64 {
         self.covariance[(0, 1)] / (self.error(0) * self.error(1))
     }
@@ -56,7 +53,6 @@ impl Fitted {
 
 /// The coefficients of `columns` that come nearest to `y`. With `errors`, one per point, they are
 /// propagated; without, the scatter is that of what is left over. `None` where the columns do not decide.
-#[must_use]
 pub fn linear(columns: &[Vec<f64>], y: &[f64], errors: Option<&[f64]>) -> Option<Fitted> {
     let (n, p) = (y.len(), columns.len());
     if n < p {
@@ -89,7 +85,6 @@ pub fn linear(columns: &[Vec<f64>], y: &[f64], errors: Option<&[f64]>) -> Option
 
 /// Amplitude, rate and plateau of `amplitude exp(−rate x) + plateau`, in this order. `None` with fewer than
 /// four points, or where they do not decide.
-#[must_use]
 pub fn exponential(x: &[f64], y: &[f64], errors: Option<&[f64]>) -> Option<Fitted> {
     if x.len() < 4 {
         return None;
@@ -117,7 +112,6 @@ pub fn exponential(x: &[f64], y: &[f64], errors: Option<&[f64]>) -> Option<Fitte
 
 /// Scale and energy of `scale ln(1 + x / energy)`, in this order, without the errors of the points. `None` with
 /// fewer than three points, or where they do not decide.
-#[must_use]
 pub fn logarithmic(x: &[f64], y: &[f64]) -> Option<Fitted> {
     if x.len() < 3 {
         return None;
@@ -151,7 +145,6 @@ fn residual(left: &[f64], coefficients: usize) -> f64 {
 
 /// How many standard errors that were found with so many degrees of `freedom` hold a number as surely as `sigmas` of a
 /// normal deviate do; infinite without any freedom.
-#[must_use]
 pub fn student(sigmas: f64, freedom: usize) -> f64 {
     let share = Normal::standard().cdf(sigmas);
     let student = StudentsT::new(0.0, 1.0, freedom as f64);
@@ -160,7 +153,6 @@ pub fn student(sigmas: f64, freedom: usize) -> f64 {
 
 /// Numbers that `fit` finds of `n` impacts, and their standard errors by leaving out one impact after another
 /// (the jackknife): what was read of one impact is not independent. `fit` is given which one to leave out.
-#[must_use]
 pub fn leaving_out(
     n: usize,
     fit: impl Fn(Option<usize>) -> Option<Vec<f64>>,
@@ -178,7 +170,6 @@ pub fn leaving_out(
 
 /// Up to what mean absolute deviation points with these standard `errors` have of a curve that they would lie on
 /// without: the mean of |ε| is σ √(2/π), its variance σ² (1 − 2/π), and `sigmas` of that are allowed for.
-#[must_use]
 pub fn deviation_by_scatter(errors: &[f64], sigmas: f64) -> f64 {
     let share = std::f64::consts::FRAC_2_PI;
     let n = errors.len() as f64;
@@ -192,7 +183,6 @@ fn left_over(columns: &[Vec<f64>], y: &[f64]) -> f64 {
 }
 
 /// Where between `ends` the `cost` is least; `None` if the search fails.
-#[must_use]
 pub fn search(ends: [f64; 2], cost: impl Fn(f64) -> f64) -> Option<f64> {
     let solver = BrentOpt::new(ends[0], ends[1]);
     let search = Executor::new(Cost(cost), solver).configure(|state| state.max_iters(EVALUATIONS));

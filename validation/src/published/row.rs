@@ -55,7 +55,6 @@ pub struct Table {
 
 impl Table {
     /// An empty one.
-    #[must_use]
     pub fn new(caption: &str, head: &[&str]) -> Self {
         let head = head.iter().map(|&name| name.to_owned()).collect();
         Self { caption: caption.to_owned(), head, rows: Vec::new() }
@@ -76,7 +75,6 @@ pub struct Figure {
 
 impl Findings {
     /// The worst verdict of its checks, in the order of [`Verdict`].
-    #[must_use]
     pub fn verdict(&self) -> Verdict {
         self.checks.iter().map(|check| check.verdict).max().unwrap_or(Verdict::NotRun)
     }

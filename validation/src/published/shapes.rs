@@ -17,9 +17,6 @@ const SEEDS: [u64; 2] = [1, 3];
 pub type Impact = (Case, Outcome);
 
 /// The impacts of `shapes` at every speed, on every bed.
-///
-/// # Errors
-/// If one cannot be run.
 pub fn over_speed(
     laboratory: &Laboratory<'_>,
     shapes: &[&'static str],
@@ -36,17 +33,11 @@ pub fn over_speed(
 }
 
 /// The impacts of all three shapes.
-///
-/// # Errors
-/// If one cannot be run.
 pub fn all_shapes(laboratory: &Laboratory<'_>) -> Result<Vec<Impact>, PublishedError> {
     over_speed(laboratory, &SHAPES)
 }
 
 /// The hemisphere without and with friction, a pair per bed.
-///
-/// # Errors
-/// If one cannot be run.
 pub fn rubbed(laboratory: &Laboratory<'_>) -> Result<Vec<[Impact; 2]>, PublishedError> {
     let (bed, which) = of_effort(laboratory);
     let (model, speed) = RUBBED;
@@ -59,19 +50,16 @@ pub fn rubbed(laboratory: &Laboratory<'_>) -> Result<Vec<[Impact; 2]>, Published
 
 /// Largest depth (m) of an impact: the study's "maximum impact depth". Where the bed throws the intruder back it is
 /// more than that until the velocity is first zero.
-#[must_use]
 pub fn deepest(one: &Outcome) -> f64 {
     one.path_m.iter().copied().fold(one.depth_m, f64::max)
 }
 
 /// Those of one shape.
-#[must_use]
 pub fn of<'a>(impacts: &'a [Impact], shape: &str) -> Vec<&'a Impact> {
     impacts.iter().filter(|(case, _)| case.model == shape).collect()
 }
 
 /// The shape's name without its dimension.
-#[must_use]
 pub fn name(shape: &str) -> &str {
     shape.trim_end_matches("-3d")
 }

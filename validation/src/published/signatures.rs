@@ -24,7 +24,6 @@ enum Answer {
 }
 
 /// Trends that rows answer to.
-#[must_use]
 pub fn table() -> Table {
     let caption = "Published trends that rows answer to.";
     let mut table = Table::new(caption, &["system", "trend", "source", "answered by"]);
@@ -39,7 +38,6 @@ pub fn table() -> Table {
 }
 
 /// Trends that no row answers to, each with the reason.
-#[must_use]
 pub fn unanswered() -> Vec<Check> {
     let check = |one: &Signature| match one.answer {
         Answer::None(verdict, why) => {

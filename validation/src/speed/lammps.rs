@@ -99,15 +99,11 @@ impl Lammps {
     }
 
     /// Whether it can run on several ranks.
-    #[must_use]
     pub fn has_ranks(&self) -> bool {
         self.mpirun.is_some()
     }
 
     /// Has it read `input` in `folder`, to the end.
-    ///
-    /// # Errors
-    /// If LAMMPS fails.
     pub fn read(&self, folder: &Path, input: &str) -> Result<(), SpeedError> {
         let mut command = Command::new(&self.program);
         command.current_dir(folder).env("OMP_NUM_THREADS", "1");

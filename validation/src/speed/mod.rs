@@ -23,49 +23,22 @@ use thiserror::Error;
 
 /// Why a benchmark ends early.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum SpeedError {
-    /// A model, a bed or an impact of a problem fails.
     #[error(transparent)]
     Impact(#[from] CampaignError),
-    /// LAMMPS cannot express a problem.
     #[error(transparent)]
     Lammps(#[from] LammpsError),
-    /// A file cannot be read or written.
     #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// A program cannot be started.
+    File { path: PathBuf, source: io::Error },
     #[error("cannot start {}: {source}", program.display())]
-    Start {
-        /// The program.
-        program: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// A program failed, or said something else than it should.
+    Start { program: PathBuf, source: io::Error },
     #[error("{} {what}:\n{said}", program.display())]
-    Program {
-        /// The program.
-        program: PathBuf,
-        /// What it did.
-        what: String,
-        /// The end of what it wrote.
-        said: String,
-    },
-    /// A problem has no bed of grains from a table.
+    Program { program: PathBuf, what: String, said: String },
     #[error("{}: no bed of grains from a table", .0.display())]
     NoTable(PathBuf),
-    /// A run that ends before it is looked at.
     #[error("{steps} steps are too few to be timed in a run with its log")]
-    TooShort {
-        /// How many were asked for.
-        steps: u64,
-    },
-    /// The preparation of a bed was stopped.
+    TooShort { steps: u64 },
     #[error("stopped while a bed was prepared")]
     Stopped,
 }

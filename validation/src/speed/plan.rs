@@ -62,13 +62,11 @@ pub struct Peer {
 
 impl Measured {
     /// The peer of the same law, of the first build.
-    #[must_use]
     pub fn first_peer(&self) -> Option<&Peer> {
         self.peers.first()
     }
 
     /// The fastest peer on one core, by the median of CPU time.
-    #[must_use]
     pub fn fastest_peer(&self) -> Option<&Peer> {
         let rate = |peer: &Peer| {
             let spread = Spread::of(peer.one.iter().map(Trial::per_cpu_second));
@@ -78,14 +76,12 @@ impl Measured {
     }
 
     /// Rate of plunge on one core over that of `peer` in the same repeat (–).
-    #[must_use]
     pub fn over(&self, peer: &Peer) -> Option<Spread> {
         let pairs = self.one.iter().zip(&peer.one);
         Spread::of(pairs.map(|(own, peer)| own.per_cpu_second() / peer.per_cpu_second()))
     }
 
     /// How far the velocity of the intruder at the end is from that of `peer`, over the latter (–).
-    #[must_use]
     pub fn apart(&self, peer: &Peer) -> Option<f64> {
         let [own, peer] = [&self.one, &peer.one].map(|trials| trials.first()?.velocity_m_per_s);
         let (own, peer) = (own?, peer?);
@@ -95,7 +91,6 @@ impl Measured {
     }
 
     /// The largest of these over the peers of the same law (–).
-    #[must_use]
     pub fn disagreement(&self) -> Option<f64> {
         let same = self.peers.iter().filter(|peer| peer.is_same_law);
         same.filter_map(|peer| self.apart(peer)).max_by(f64::total_cmp)
@@ -115,7 +110,6 @@ pub struct Batch {
 
 impl Batch {
     /// What is lost by running them together (–).
-    #[must_use]
     pub fn loss(&self) -> f64 {
         1.0 - self.together / self.expected
     }

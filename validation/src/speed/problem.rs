@@ -120,7 +120,6 @@ pub struct BedTime {
 
 impl Problem {
     /// The problem called `name`.
-    #[must_use]
     pub fn find(name: &str) -> Option<&'static Self> {
         PROBLEMS.iter().find(|problem| problem.name == name)
     }

@@ -34,7 +34,6 @@ fn commit() -> Option<String> {
 }
 
 /// The widest instructions that this program was compiled for.
-#[must_use]
 pub fn simd() -> &'static str {
     match (cfg!(target_feature = "avx512f"), cfg!(target_feature = "avx2")) {
         (true, _) => "avx512",
@@ -104,7 +103,6 @@ fn of_peer(measured: &Measured, peer: &Peer) -> Value {
 }
 
 /// Everything as one JSON object.
-#[must_use]
 pub fn as_json(plan: &Plan, results: &Results) -> Value {
     let problem = |one: &Measured| {
         json!({
@@ -211,7 +209,6 @@ fn peers(results: &Results) -> String {
 }
 
 /// The tables of the page on performance.
-#[must_use]
 pub fn as_markdown(plan: &Plan, results: &Results) -> String {
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".to_owned());
     let mut text = match commit() {

@@ -15,7 +15,6 @@ pub struct Spread {
 
 impl Spread {
     /// Of `values`; nothing of none.
-    #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);

@@ -25,7 +25,6 @@ pub struct Span {
 
 impl Span {
     /// The step at which it ends.
-    #[must_use]
     pub fn end(&self) -> u64 {
         self.warm_up + self.steps
     }
@@ -52,19 +51,16 @@ pub struct Trial {
 
 impl Trial {
     /// Grains times steps (–).
-    #[must_use]
     pub fn grain_steps(&self) -> f64 {
         self.grains as f64 * self.steps as f64
     }
 
     /// Grain-steps per second of CPU time (1/s).
-    #[must_use]
     pub fn per_cpu_second(&self) -> f64 {
         self.grain_steps() / self.cpu_s
     }
 
     /// Grain-steps per second of wall time (1/s).
-    #[must_use]
     pub fn per_wall_second(&self) -> f64 {
         self.grain_steps() / self.wall_s
     }

@@ -152,7 +152,6 @@ impl Energies {
 }
 
 /// Every impact of the study on beds of `seeds` seeds: all shapes at all speeds, then all frictions.
-#[must_use]
 pub fn cases(seeds: u64) -> Vec<Case> {
     let seeds = 1..=seeds;
     let shapes = seeds.clone().flat_map(|seed| {
@@ -257,9 +256,6 @@ impl Task for ShapeTask {
 }
 
 /// Has those of `cases` that are not there run by `elsewhere`; `watch` is told how many are.
-///
-/// # Errors
-/// If they cannot be handed over, or not all end well.
 pub fn have_done(
     cases: &[Case],
     places: &Places,
@@ -295,7 +291,6 @@ fn found(path: &Path, key: &str) -> Option<Outcome> {
 
 impl Case {
     /// Its name in files.
-    #[must_use]
     pub fn name(&self) -> String {
         let Self { model, speed, seed, friction, bed } = self;
         let friction =
@@ -371,7 +366,6 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, CampaignError> {
 }
 
 /// Mean and standard error of `values`; the error is 0 for a single one.
-#[must_use]
 pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;

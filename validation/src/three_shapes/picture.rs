@@ -8,9 +8,6 @@ use super::{Case, FRICTIONS, Outcome, RUBBED, SHAPES, SPEEDS, group, mean_and_er
 const SIZE: (u32, u32) = (560, 400);
 
 /// Depth over the energy of the impact, a colour per shape, with the standard error over beds.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn depths(results: &[(Case, Outcome)]) -> Result<String, PictureError> {
     svg(SIZE, |area| draw_depths(area, results))
 }
@@ -59,9 +56,6 @@ fn draw_depths(area: &Area<'_>, results: &[(Case, Outcome)]) -> Drawn {
 }
 
 /// Speed of the hemisphere over time with and without friction, a colour per bed.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn frictions(results: &[(Case, Outcome)]) -> Result<String, PictureError> {
     svg(SIZE, |area| draw_frictions(area, results))
 }

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use super::{Case, FRICTIONS, Outcome, RUBBED, SHAPES, SPEEDS, group, mean_and_error};
 
 /// Depth at each speed and shape, whether the order holds, and what friction changes.
-#[must_use]
 pub fn table(results: &[(Case, Outcome)]) -> String {
     let mut text = String::from(
         "Depth (mm): mean over the seeds, its standard error, and the single beds.\n\n\

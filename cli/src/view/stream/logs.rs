@@ -43,9 +43,6 @@ impl Logs {
     }
 
     /// Reads on, at most a chunk of each log.
-    ///
-    /// # Errors
-    /// Why a log cannot be read.
     pub(super) fn advance(&mut self) -> Result<Next, ReadError> {
         let files = RunFiles::so_far(&self.run);
         let mut next = Next::default();

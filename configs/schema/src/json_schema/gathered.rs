@@ -43,7 +43,6 @@ enum Where<'a> {
 
 impl Gathered {
     /// Nothing yet.
-    #[must_use]
     pub fn new(format: Format) -> Self {
         Self { format, facts: Vec::new() }
     }
@@ -78,7 +77,6 @@ impl Gathered {
     }
 
     /// The schema.
-    #[must_use]
     pub fn schema(&self) -> Value {
         let mut schema = Map::new();
         schema.insert("$schema".into(), json!("http://json-schema.org/draft-07/schema#"));

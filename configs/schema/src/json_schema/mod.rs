@@ -16,7 +16,6 @@ pub use model::{loosened, model, read_model};
 pub use variation::asked;
 
 /// The comment that tells an editor where the schema of a file stands.
-#[must_use]
 pub fn header(path: &str) -> String {
     format!("#:schema {path}\n")
 }

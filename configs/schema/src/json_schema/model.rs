@@ -10,7 +10,6 @@ use crate::read::{self, DataFolder, KEYS_OF_PARAMETER, PARAMETERS};
 use crate::reader::{Asked, FileKind, TableReader};
 
 /// The schema of a model file.
-#[must_use]
 pub fn model() -> Value {
     let (texts, whole) = probes::models();
     let mut gathered = Gathered::new(format());
@@ -24,7 +23,6 @@ pub fn model() -> Value {
 }
 
 /// What a reader asks of the model `text`, whose data files lie in `folder`; nothing where it is no TOML.
-#[must_use]
 pub fn read_model(text: &str, folder: &Path) -> Asked {
     asked((FileKind::Model, &reading(folder)), text, None).pop().unwrap_or_default()
 }
@@ -71,7 +69,6 @@ fn format() -> Format {
 
 /// The schema of files that set any keys of a model: nothing is required, lists of tables take anything, and what
 /// stands at a key is what `leaf` makes of the schema of its value.
-#[must_use]
 pub fn loosened(model: &Value, leaf: &impl Fn(&Value) -> Value) -> Value {
     let is_table = |value: &Value| value.get("properties").is_some();
     let is_list_of_tables = |value: &Value| value.get("items").is_some_and(is_table);

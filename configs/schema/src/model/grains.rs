@@ -43,7 +43,6 @@ pub struct GrainMedium {
 
 impl GrainMedium {
     /// Moment of inertia of a grain over m r² during the impact.
-    #[must_use]
     pub fn inertia_coefficient(&self) -> f64 {
         self.grain_inertia.unwrap_or(self.space.inertia_coefficient())
     }
@@ -142,7 +141,6 @@ pub enum BottomKind {
 
 impl Container {
     /// The same to the engine, with plain walls where layers absorb.
-    #[must_use]
     pub(crate) fn without_layers(&self) -> boundary::Container {
         let sides = match self.sides {
             SidesKind::Periodic => Sides::Periodic,
@@ -152,7 +150,6 @@ impl Container {
     }
 
     /// What it is from above, to the engine.
-    #[must_use]
     pub fn base(&self) -> Base {
         match self.shape {
             ContainerShape::Box => Base::Rectangle { width: self.width, depth: self.depth },
@@ -220,7 +217,6 @@ pub enum Material {
 
 impl GrainKind {
     /// The mass (kg) of a grain of `diameter` (m).
-    #[must_use]
     pub fn mass(&self, space: Space, diameter: f64) -> f64 {
         match self.material {
             Material::Mass(mass) => mass,
@@ -229,7 +225,6 @@ impl GrainKind {
     }
 
     /// The mass of all of them (kg), expected where sizes are drawn.
-    #[must_use]
     pub fn total_mass(&self, space: Space) -> f64 {
         let one = match self.material {
             Material::Mass(mass) => mass,
@@ -239,7 +234,6 @@ impl GrainKind {
     }
 
     /// The mean volume of one (m³), or area (m²) in a plane.
-    #[must_use]
     pub fn content(&self, space: Space) -> f64 {
         match space {
             Space::Planar => FRAC_PI_4 * self.sizes.moment(2),
@@ -318,13 +312,11 @@ pub struct GrainModel<'a> {
 
 impl<'a> GrainModel<'a> {
     /// Canonical text of everything that the prepared bed depends on, and of nothing else.
-    #[must_use]
     pub fn bed_key_text(&self) -> &'a str {
         &self.model.bed_key
     }
 
     /// The largest diameter of a grain (m).
-    #[must_use]
     pub fn largest_grain(&self) -> f64 {
         let largest = |diameters: &mut dyn Iterator<Item = f64>| diameters.fold(0.0, f64::max);
         match &self.medium.bed.source {
@@ -337,7 +329,6 @@ impl<'a> GrainModel<'a> {
     }
 
     /// The smallest diameter of a grain (m).
-    #[must_use]
     pub(crate) fn smallest_grain(&self) -> f64 {
         match &self.medium.bed.source {
             BedSource::Settle(settle) => {
@@ -351,7 +342,6 @@ impl<'a> GrainModel<'a> {
     }
 
     /// The mean diameter of the grains (m).
-    #[must_use]
     pub fn mean_grain(&self) -> f64 {
         let sum: f64 = match &self.medium.bed.source {
             BedSource::Settle(settle) => {
@@ -363,7 +353,6 @@ impl<'a> GrainModel<'a> {
     }
 
     /// Memory (byte) that the size of the container asks for, however few the grains are.
-    #[must_use]
     pub fn container_bytes(&self) -> f64 {
         let container = self.medium.container.without_layers();
         let diameters = [self.largest_grain(), self.mean_grain()];
@@ -371,7 +360,6 @@ impl<'a> GrainModel<'a> {
     }
 
     /// How wide (m) a container is of which the grains cover the floor once: a planar one, or a square.
-    #[must_use]
     pub fn width_of_a_layer(&self) -> f64 {
         let n = self.n_grains() as f64;
         let across = match self.medium.space {
@@ -382,7 +370,6 @@ impl<'a> GrainModel<'a> {
     }
 
     /// Number of grains in the bed.
-    #[must_use]
     pub fn n_grains(&self) -> u64 {
         match &self.medium.bed.source {
             BedSource::Settle(settle) => settle.grains.iter().map(|kind| kind.count).sum(),

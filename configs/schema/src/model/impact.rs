@@ -62,7 +62,6 @@ pub struct Impact {
 
 impl Impact {
     /// The table of the model file that says it.
-    #[must_use]
     pub fn table(&self) -> &'static str {
         if self.pushed_to.is_some() { INTRUSION } else { IMPACT }
     }
@@ -91,7 +90,6 @@ pub struct Launch {
 
 impl Launch {
     /// Velocity (m/s) in the x–z plane, towards +x and down.
-    #[must_use]
     pub fn velocity(&self) -> Vec3 {
         // Straight down is exactly down: a cosine of round-off size is no horizontal speed.
         let (sine, cosine) = if self.angle_rad >= FRAC_PI_2 {
@@ -103,7 +101,6 @@ impl Launch {
     }
 
     /// How long (s) a run lasts at most that may last `duration` (s): a push is over at its depth.
-    #[must_use]
     pub fn time(&self, duration: f64) -> f64 {
         let sinking = -self.velocity().z;
         self.pushed_to.map_or(duration, |depth| duration.min(depth / sinking))
@@ -138,7 +135,6 @@ pub struct Condition {
 
 impl Condition {
     /// Angle below the horizontal (deg), as a file says it.
-    #[must_use]
     pub fn angle_deg(&self) -> f64 {
         degrees(self.angle_rad)
     }

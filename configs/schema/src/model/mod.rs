@@ -78,7 +78,6 @@ pub enum Medium {
 
 impl Medium {
     /// The kind of medium, as in TOML and in summaries.
-    #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Grains(_) => "grains",
@@ -89,7 +88,6 @@ impl Medium {
 
 impl Model {
     /// The model with its bed of grains, if that is its medium.
-    #[must_use]
     pub fn grains(&self) -> Option<GrainModel<'_>> {
         match &self.medium {
             Medium::Grains(medium) => Some(GrainModel { model: self, medium }),
@@ -98,7 +96,6 @@ impl Model {
     }
 
     /// The model with its force law, if that is its medium.
-    #[must_use]
     pub fn resistive(&self) -> Option<ResistiveModel<'_>> {
         match &self.medium {
             Medium::Grains(_) => None,
@@ -112,7 +109,6 @@ impl Model {
     /// A start position is taken from `conditions.x`, else drawn when `positions` is above 1, else
     /// `impact.x`, else the middle of the container. A resistive medium is the same everywhere, and
     /// its impacts start at 0.
-    #[must_use]
     pub fn conditions(&self) -> Vec<Condition> {
         let lists = self.conditions.as_ref();
         let or_single = |list: Option<&Vec<f64>>, single: f64| match list {
@@ -145,19 +141,16 @@ impl Model {
     }
 
     /// How long a run under `condition` lasts at most (s).
-    #[must_use]
     pub fn time(&self, condition: &Condition) -> f64 {
         self.launch(condition).time(self.run.duration)
     }
 
     /// How long a run lasts at most, under any condition (s).
-    #[must_use]
     pub fn longest(&self) -> f64 {
         self.conditions().iter().map(|condition| self.time(condition)).fold(0.0, f64::max)
     }
 
     /// How the intruder comes in at `condition`.
-    #[must_use]
     pub fn launch(&self, condition: &Condition) -> Launch {
         let Condition { speed, angle_rad, .. } = *condition;
         let Impact { spin, attitude_rad, pushed_to, .. } = self.impact;
@@ -166,14 +159,12 @@ impl Model {
 
     /// The model as TOML with every value in SI and every default written out. It loads to the
     /// same model, and its own resolved text is itself.
-    #[must_use]
     pub fn resolved_toml(&self) -> &str {
         &self.resolved
     }
 
     /// blake3 of [`Model::resolved_toml`], in hexadecimal; of a table of grains the content counts, and
     /// not where the file lies.
-    #[must_use]
     pub fn hash(&self) -> String {
         self.hash.clone()
     }

@@ -23,17 +23,12 @@ pub struct FreeParameter {
 
 /// Why a parameter cannot be set.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum ParameterError {
-    /// There is no such number.
     #[error("the model has no number `{path}`")]
-    Unknown {
-        /// Its path.
-        path: String,
-    },
-    /// It may not have this value.
+    Unknown { path: String },
     #[error("`{path}` may not be {value}")]
     NotAllowed {
-        /// Its path.
         path: String,
         /// (SI).
         value: f64,
@@ -50,7 +45,6 @@ enum Place {
 
 impl ResistiveMedium {
     /// The numbers that a fit may change, in the order of [`ResistiveMedium::free`].
-    #[must_use]
     pub fn free_parameters(&self) -> Vec<FreeParameter> {
         let all = self.parameters();
         let find = |path: &String| all.iter().find(|one| one.path == *path).cloned();
@@ -58,7 +52,6 @@ impl ResistiveMedium {
     }
 
     /// Every number of the law: the coefficients, node by node, and the amplitudes of the effects.
-    #[must_use]
     pub fn parameters(&self) -> Vec<FreeParameter> {
         let coefficients = self.resistance.parameters().into_iter().map(|(_, one)| one);
         coefficients.chain(self.amplitudes().map(|(_, one)| one)).collect()

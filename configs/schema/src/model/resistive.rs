@@ -91,7 +91,6 @@ pub struct ResistiveModel<'a> {
 
 impl ResistiveModel<'_> {
     /// The impact `condition`, ready to be integrated.
-    #[must_use]
     pub fn impact(&self, condition: &Condition) -> Impact {
         self.medium.impact(&self.model.intruder, &self.model.launch(condition))
     }
@@ -100,7 +99,6 @@ impl ResistiveModel<'_> {
 impl ResistiveMedium {
     /// An impact of `intruder` on this medium, ready to be integrated; its lowest point starts at the
     /// surface, at x = 0.
-    #[must_use]
     pub fn impact(&self, intruder: &Intruder, launch: &Launch) -> Impact {
         let launchable = (intruder.shape.assembly)(&AssemblyRequest {
             params: &intruder.params,
@@ -118,14 +116,12 @@ impl ResistiveMedium {
     }
 
     /// What laws are told of the medium.
-    #[must_use]
     pub fn surroundings(&self) -> Surroundings {
         let Self { bulk_density, gravity, packing, bed_depth, fluid, .. } = *self;
         Surroundings { bulk_density, gravity, packing, bed_depth, fluid }
     }
 
     /// The baseline for a body that comes as `approach` says, then the effects in their order.
-    #[must_use]
     pub fn laws_at(&self, approach: Approach) -> Vec<Box<dyn ResistanceLaw>> {
         let mut laws = vec![(self.resistance.entry.build)(&self.coefficients_at(approach.angle))];
         let mut effects: Vec<&EffectChoice> = self.effects.iter().collect();
@@ -135,7 +131,6 @@ impl ResistiveMedium {
     }
 
     /// The coefficients of the baseline for an impact at `angle_rad` below the horizontal.
-    #[must_use]
     pub fn coefficients_at(&self, angle_rad: f64) -> Coefficients {
         let mut numbers = ParamTable::new();
         let mut functions = Vec::new();
@@ -170,7 +165,6 @@ impl ResistanceChoice {
 
 impl AngleTable {
     /// The value for an impact at `angle_rad`.
-    #[must_use]
     pub fn at(&self, angle_rad: f64) -> f64 {
         let above = self.angles_rad.partition_point(|angle| *angle <= angle_rad);
         let last = self.values.len() - 1;
@@ -183,7 +177,6 @@ impl AngleTable {
     }
 
     /// Whether `angle_rad` lies between the first and the last node.
-    #[must_use]
     pub fn covers(&self, angle_rad: f64) -> bool {
         self.angles_rad.first().is_some_and(|first| angle_rad >= *first)
             && self.angles_rad.last().is_some_and(|last| angle_rad <= *last)

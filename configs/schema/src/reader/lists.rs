@@ -7,7 +7,6 @@ use crate::resolved::{Written, quoted};
 impl TableReader<'_> {
     /// A list of strings, if it is given, without writing it to the resolved model; the outer `None` is
     /// an error that was reported.
-    #[must_use]
     pub fn raw_texts(
         &self,
         key: &'static str,

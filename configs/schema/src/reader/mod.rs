@@ -45,7 +45,6 @@ pub struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// Nothing read yet.
-    #[must_use]
     pub fn new(sources: &'a Sources, kind: FileKind) -> Self {
         Self {
             sources,
@@ -59,7 +58,6 @@ impl<'a> Reader<'a> {
     }
 
     /// The same, which notes what it asks.
-    #[must_use]
     pub(crate) fn noting(sources: &'a Sources, kind: FileKind) -> Self {
         Self { notes: Some(RefCell::default()), ..Self::new(sources, kind) }
     }
@@ -79,14 +77,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether there is an error among what was reported.
-    #[must_use]
     pub fn failed(&self) -> bool {
         self.diagnostics.borrow().iter().any(|one| one.severity == Severity::Error)
             || !self.unknown.borrow().is_empty()
     }
 
     /// The root: only tables may stand there.
-    #[must_use]
     pub fn root(&'a self, table: &'a Table) -> TableReader<'a> {
         TableReader::new(self, "the file", String::new(), Some(table))
     }
@@ -140,13 +136,11 @@ impl<'a> TableReader<'a> {
     }
 
     /// The header of the table, when the file has it.
-    #[must_use]
     pub fn header(&self) -> Option<Span> {
         self.table.map(|table| table.header)
     }
 
     /// Whether `key` is given; it counts as known from now on.
-    #[must_use]
     pub fn has(&self, key: &'static str) -> bool {
         self.entry(key).is_some()
     }
@@ -187,7 +181,6 @@ impl<'a> TableReader<'a> {
 
     /// A table below this one. When it is required and missing, that is reported once, with
     /// `example` as what to write.
-    #[must_use]
     pub fn table(&self, key: &'static str, example: Option<&str>) -> TableReader<'a> {
         self.asks(key, "", || Answer::Table);
         self.below(key, example)
@@ -226,14 +219,12 @@ impl<'a> TableReader<'a> {
     }
 
     /// The elements of an array of tables below this one.
-    #[must_use]
     pub fn tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
         self.asks(key, "", || Answer::Tables);
         self.list(key, at_most)
     }
 
     /// A table below this one, or the elements of an array of such tables.
-    #[must_use]
     pub fn table_or_tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
         self.asks(key, "", || Answer::TableOrTables);
         match self.entry(key).map(|entry| &entry.node.value) {
@@ -290,13 +281,11 @@ impl<'a> TableReader<'a> {
     }
 
     /// Where the value of `key` stands, if the file gives it.
-    #[must_use]
     pub fn span_of(&self, key: &str) -> Option<Span> {
         self.table.and_then(|table| table.get(key)).map(|entry| entry.node.span)
     }
 
     /// The value of `key` as it stands in the file.
-    #[must_use]
     pub fn node(&self, key: &'static str) -> Option<&'a Node> {
         self.entry(key).map(|entry| &entry.node)
     }

@@ -315,7 +315,6 @@ impl TableReader<'_> {
 }
 
 /// An interval of SI values in words: `above 0 m`, `0 to 1.5`; angles in degrees.
-#[must_use]
 pub fn interval(range: Range, dimension: Dimension) -> String {
     let show = |value: f64| match dimension {
         Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e6).round() / 1e6),

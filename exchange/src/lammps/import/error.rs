@@ -10,48 +10,25 @@ use super::super::{DUMP, INTRUDER_TABLE};
 
 /// Why a run of LAMMPS is not brought in.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum ImportError {
-    /// A file is not there.
     #[error(
         "{} is not there; import takes the folder that `plunge export MODEL --to lammps` wrote, after \
          lmp -in in.impact has run in it",
         path.display()
     )]
-    Missing {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The system refuses.
+    Missing { path: PathBuf },
     #[error("cannot {doing} {}: {source}", path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What was being done.
-        doing: &'static str,
-        /// The system's answer.
-        source: io::Error,
-    },
-    /// A file that does not say what the input asks LAMMPS for.
+    Io { path: PathBuf, doing: &'static str, source: io::Error },
     #[error("{}: {why}", path.display())]
-    Misread {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// A frame at a step at which nothing is known of the intruder.
+    Misread { path: PathBuf, why: String },
     #[error(
         "{DUMP} has a frame at step {step}, of which {INTRUDER_TABLE} says nothing: `frame` has to be a \
          multiple of `every`"
     )]
-    Unpaired {
-        /// The step.
-        step: u64,
-    },
-    /// The log cannot be written.
+    Unpaired { step: u64 },
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// It was asked to stop; no log is left.
     #[error("stopped before the end")]
     Stopped,
 }

@@ -54,9 +54,6 @@ const LAYOUTS: [&Layout; 15] = [
 ];
 
 /// The tracks of a sheet.
-///
-/// # Errors
-/// What is wrong with it.
 pub(super) fn tracks(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     refuse_derivatives(sheet, columns)?;
     refuse_forces(sheet, columns)?;

@@ -83,56 +83,40 @@ pub struct Draft {
 
 /// Why there is no such effect.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum OwnEffectError {
-    /// The name is not of the right form.
     #[error("invalid effect name `{0}`: use lowercase letters, digits and hyphens")]
     Id(String),
-    /// The name is that of something else.
     #[error(
         "`{0}` is the name of a law, an effect or an account of energy that comes with the program"
     )]
     Taken(String),
-    /// A parameter cannot be called that.
     #[error("a parameter cannot be called `{name}`: {why}")]
-    Name {
-        /// What it is called.
-        name: String,
-        /// Why not.
-        why: &'static str,
-    },
-    /// There is no amplitude.
+    Name { name: String, why: &'static str },
     #[error("the parameter `q`, the amplitude, is missing")]
     NoAmplitude,
-    /// The range of the amplitude leaves out what it is without the effect.
     #[error("the range of `q` leaves out 0, which it is without the effect")]
     NeverAbsent,
-    /// The amplitude cannot be positive.
     #[error("the range of `q` has nothing above 0; turn the sign of the force around")]
     NeverPresent,
-    /// The formula cannot be read.
     #[error(transparent)]
     Formula(#[from] FormulaError),
-    /// The formula is no force.
     #[error(transparent)]
     Dimension(#[from] DimensionError),
-    /// A parameter that the formula does not use.
     #[error("the formula does not use `{0}`")]
     Unused(String),
 }
 
 /// Why the force of an effect cannot be what it is said to be.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum ForceError {
-    /// It is no number.
     #[error("is not finite")]
     NotFinite,
-    /// It is there without the effect.
     #[error("does not vanish with q = 0: {0:.3e} N are left")]
     WithoutAmplitude(f64),
-    /// A drag that is there at rest.
     #[error("is {0:.3e} N at rest: only a friction is there without motion")]
     AtRest(f64),
-    /// A friction that pushes.
     #[error("is {0:.3e} N: a friction cannot be negative")]
     NegativeFriction(f64),
 }
@@ -216,25 +200,21 @@ impl OwnEffect {
     }
 
     /// Its name.
-    #[must_use]
     pub fn id(&self) -> &str {
         &self.draft.id
     }
 
     /// What the model file says of it.
-    #[must_use]
     pub fn draft(&self) -> &Draft {
         &self.draft
     }
 
     /// The amplitude `q` and what it may be.
-    #[must_use]
     pub fn amplitude(&self) -> &ParamSpec {
         &self.amplitude
     }
 
     /// What data must contain to show it.
-    #[must_use]
     pub fn visible(&self) -> Vec<Needs> {
         let mut all: Vec<Needs> = Vec::new();
         for need in self.used().filter_map(|variable| variable.needs) {

@@ -23,7 +23,6 @@ pub struct StateVariable {
 
 impl StateVariable {
     /// Its dimension; angles count as pure numbers.
-    #[must_use]
     pub fn dimension(&self, space: Space) -> Dimension {
         match space {
             Space::Spatial => self.dimensions[0],

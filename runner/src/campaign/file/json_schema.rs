@@ -30,7 +30,6 @@ seed = 1
 ";
 
 /// The schema.
-#[must_use]
 pub fn campaign() -> Value {
     let model = model();
     let mut gathered = Gathered::new(format(&model));
@@ -39,7 +38,6 @@ pub fn campaign() -> Value {
 }
 
 /// What a reader asks of the text of a campaign; nothing where it is no TOML.
-#[must_use]
 pub fn read_campaign(text: &str) -> Asked {
     asked(READER, text, None).pop().unwrap_or_default()
 }

@@ -136,13 +136,11 @@ impl Campaign {
     }
 
     /// An error in a place of this file.
-    #[must_use]
     pub fn error(&self, diagnostic: Diagnostic) -> ConfigError {
         ConfigError::Invalid { diagnostics: vec![diagnostic], sources: self.sources.clone() }
     }
 
     /// Points of one model and one seed.
-    #[must_use]
     pub(crate) fn n_settings(&self) -> usize {
         let product = self.product.iter().map(|axis| axis.values.len());
         let sampled = self.sample.as_ref().map_or(1, |sample| sample.count);
@@ -151,7 +149,6 @@ impl Campaign {
     }
 
     /// All points.
-    #[must_use]
     pub fn n_points(&self) -> usize {
         let others = [self.models.len(), self.seeds.len().max(1)];
         others.into_iter().fold(self.n_settings(), usize::saturating_mul)

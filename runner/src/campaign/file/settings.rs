@@ -52,7 +52,6 @@ pub enum Scale {
 
 impl Setting {
     /// As `--set` takes it.
-    #[must_use]
     pub fn assignment(&self) -> String {
         format!("{}={}", self.key, self.value)
     }
@@ -60,7 +59,6 @@ impl Setting {
 
 impl SampledRange {
     /// The value at `share` of the range, 0 at one end and 1 at the other.
-    #[must_use]
     pub fn at(&self, share: f64) -> Setting {
         let Self { from, to, .. } = *self;
         let value = match self.scale {

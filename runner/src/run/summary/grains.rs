@@ -36,7 +36,6 @@ impl FinalEnergy {
 
 impl BedSummary {
     /// The bed as `report` has it; `cache` says where it came from.
-    #[must_use]
     pub fn new(report: &BedReport, cache: &str, model: GrainModel<'_>) -> Self {
         Self {
             grains: report.grains,

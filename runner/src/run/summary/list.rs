@@ -69,7 +69,6 @@ impl Scatter {
 
 impl ListSummary {
     /// The summaries of all conditions of `model`, in order.
-    #[must_use]
     pub fn new(model: &Model, runs: Vec<Summary>) -> Self {
         let mut groups: Vec<(f64, f64, Vec<&Summary>)> = Vec::new();
         for run in &runs {

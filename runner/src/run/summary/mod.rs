@@ -65,7 +65,6 @@ pub struct ImpactSummary {
 
 impl ImpactSummary {
     /// Of `condition`, which starts at `x` along the bed (m).
-    #[must_use]
     pub fn new(condition: &Condition, x: f64) -> Self {
         Self {
             speed_m_per_s: condition.speed,

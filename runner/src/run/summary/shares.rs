@@ -18,7 +18,6 @@ pub struct EnergyShares {
 impl EnergySummary {
     /// Of this summary. An account that is negative is a source: a bed that has sunk, or a law that gives more than it
     /// takes.
-    #[must_use]
     pub fn shares(&self) -> EnergyShares {
         let mut shares = EnergyShares {
             supplied: 0.0,
@@ -48,7 +47,6 @@ impl EnergySummary {
 
 impl EnergyShares {
     /// The share (%) of what was supplied; none where nothing was.
-    #[must_use]
     pub fn percent(&self, energy: f64) -> Option<f64> {
         (self.supplied > 0.0).then(|| 100.0 * energy / self.supplied)
     }

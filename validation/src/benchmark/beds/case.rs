@@ -58,14 +58,12 @@ pub struct Case {
 
 /// Why a case ends without an outcome.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
 pub enum CaseError {
-    /// Impacts cannot be run, or say nothing.
     #[error(transparent)]
     Bed(#[from] BedError),
-    /// LAMMPS fails, or is not there.
     #[error(transparent)]
     Lammps(#[from] SpeedError),
-    /// A world that the inputs for LAMMPS do not have.
     #[error("{0}: there is no such world of LAMMPS")]
     NoWorld(String),
 }
@@ -108,7 +106,6 @@ pub struct Outcome {
 
 /// The shortest list that has one of everything: every preparation with nothing hidden, then two effects and one that is
 /// not listed; small beds.
-#[must_use]
 pub fn quick() -> Vec<Case> {
     let nothing = Prepared::ALL.iter().enumerate().map(|(at, &prepared)| Case {
         prepared,
@@ -133,7 +130,6 @@ pub fn quick() -> Vec<Case> {
 
 /// Small beds, prepared in every way, of which the set says how they lie or does not, with nothing hidden and with two
 /// effects at amplitudes that no screening uses; `draws` of each.
-#[must_use]
 pub fn prepared(draws: u64) -> Vec<Case> {
     let hidden = [
         Hidden::Nothing,
@@ -146,7 +142,6 @@ pub fn prepared(draws: u64) -> Vec<Case> {
 
 /// Small beds that LAMMPS rains in every way that it can, of which the set says how they lie or does not, with nothing
 /// hidden, with two effects, and with one that is not listed; `draws` of each.
-#[must_use]
 pub fn by_lammps(draws: u64) -> Vec<Case> {
     let hidden = [
         Hidden::Nothing,
@@ -171,7 +166,6 @@ pub fn by_lammps(draws: u64) -> Vec<Case> {
 
 /// Beds of spheres, prepared like those of the model, rougher and smoother, the latter two weighed, with nothing hidden, with
 /// two effects and with one that is not listed; `draws` of each.
-#[must_use]
 pub fn of_spheres(draws: u64) -> Vec<Case> {
     let hidden = [
         Hidden::Nothing,
@@ -207,7 +201,6 @@ fn crossed(
 }
 
 /// Six candidates at two strengths, nothing, and what is not listed; `draws` of each.
-#[must_use]
 pub fn all(draws: u64) -> Vec<Case> {
     use Hidden::{BedCandidate, Nothing, Unlisted};
     let hidden = [
@@ -237,20 +230,17 @@ pub fn all(draws: u64) -> Vec<Case> {
 
 impl Case {
     /// A bed of nine hundred discs, prepared as that of the model.
-    #[must_use]
     pub fn alike(hidden: Hidden, seed: u64) -> Self {
         let prepared = Prepared::Alike;
         Self { hidden, prepared, is_weighed: false, bed: Grains::Discs, is_by_lammps: false, seed }
     }
 
     /// A small bed, prepared as that of the model.
-    #[must_use]
     pub fn small(hidden: Hidden, seed: u64) -> Self {
         Self { bed: Grains::FewDiscs, ..Self::alike(hidden, seed) }
     }
 
     /// What it is called.
-    #[must_use]
     pub fn name(&self) -> String {
         let mut name = self.hidden.name();
         if self.bed != Grains::Discs {
@@ -267,9 +257,6 @@ impl Case {
     }
 
     /// Measures and diagnoses it, with impacts as `wish` says; `lammps` runs its inputs in a folder of its own.
-    ///
-    /// # Errors
-    /// If the impacts cannot be run.
     pub fn run(
         &self,
         place: &dyn Impacts,
@@ -292,7 +279,6 @@ impl Case {
     }
 
     /// The model of the analyst as a file, with beds of seeds of its own.
-    #[must_use]
     pub fn model_text(&self) -> String {
         let text = match self.bed {
             Grains::Discs => MODEL,
@@ -303,17 +289,11 @@ impl Case {
     }
 
     /// The model of the analyst.
-    ///
-    /// # Errors
-    /// Never: the model is ours.
     pub fn model(&self) -> Result<Model, ConfigError> {
         load(self.model_text())
     }
 
     /// The model of the analyst, and what is measured.
-    ///
-    /// # Errors
-    /// If the impacts cannot be run.
     pub fn measured(
         &self,
         place: &dyn Impacts,

@@ -112,9 +112,6 @@ impl<'a> World<'a> {
     }
 
     /// `repeats` runs under every condition of `set`, and how each of their beds lay; the inputs are run in `folder`.
-    ///
-    /// # Errors
-    /// If LAMMPS fails.
     pub(super) fn measure(
         &self,
         lammps: &Lammps,

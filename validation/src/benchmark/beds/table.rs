@@ -8,7 +8,6 @@ use super::case::Outcome;
 use super::hidden::UNLISTED;
 
 /// Every case and the rates, as Markdown.
-#[must_use]
 pub fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
         "| hidden | draw | verdict | named | packing found | right | held out before → after (floor), mm | impacts | min |\n\

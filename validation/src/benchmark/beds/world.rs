@@ -45,9 +45,6 @@ const FLIGHT: usize = 10;
 const STILL: usize = 5;
 
 /// The model of `text`, which is one of the above.
-///
-/// # Errors
-/// Never: the model is ours.
 pub(super) fn load(text: String) -> Result<Model, ConfigError> {
     let source =
         ModelSource::Text { name: "the bed of the benchmark".to_owned(), text, folder: ".".into() };
@@ -55,7 +52,6 @@ pub(super) fn load(text: String) -> Result<Model, ConfigError> {
 }
 
 /// The campaign before anything is measured.
-#[must_use]
 pub fn campaign(model: &Model) -> MeasurementSet {
     let (fit, held_out) = SPEEDS;
     let fit = fit.map(|speed| condition(model, speed, Role::Fit));
@@ -97,9 +93,6 @@ fn condition(model: &Model, speed: f64, role: Role) -> Condition {
 
 /// `repeats` runs under every condition of the set of `bed_model`, whose model is changed by `hidden`; the
 /// beds and the noise of the camera follow from `seed`.
-///
-/// # Errors
-/// If the impacts cannot be run.
 pub fn measure(
     bed_model: &BedModel<'_>,
     hidden: &Variation,

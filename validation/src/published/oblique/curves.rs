@@ -97,7 +97,6 @@ pub struct Series {
 }
 
 /// Our points of `cells`.
-#[must_use]
 pub fn series(cells: &[&Cell], of: fn(&Record) -> Option<f64>) -> Series {
     let points: Vec<(f64, Vec<f64>)> = cells
         .iter()
@@ -193,7 +192,6 @@ impl Quantity {
 
     /// Mean absolute deviation (%) of our means from the published curve of an angle (deg), from 1 m/s on; none where
     /// nothing is published or no such impact is there.
-    #[must_use]
     pub fn deviation(&self, cells: &[Cell], reading: &Reading, angle: f64) -> Option<f64> {
         let own = matrix::of(cells, reading, angle);
         let curve = (self.published)(own.first()?.published)?;
@@ -298,7 +296,6 @@ impl Series {
 
     /// How many standard errors of a curve `fitted` to it hold a coefficient as surely as so many `sigmas` do where the
     /// scatter is known.
-    #[must_use]
     pub fn as_surely_as(&self, fitted: &Fitted, sigmas: f64) -> f64 {
         match self.errors {
             Some(_) => regression::student(sigmas, self.freedom),

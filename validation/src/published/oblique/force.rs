@@ -55,20 +55,17 @@ pub struct Separated {
 impl Separated {
     /// How many of its standard errors hold a coefficient as surely as so many `sigmas` do where the scatter is
     /// known.
-    #[must_use]
     pub fn as_surely_as(&self, sigmas: f64) -> f64 {
         regression::student(sigmas, self.left_out.len().saturating_sub(1))
     }
 
     /// The law without its errors.
-    #[must_use]
     pub fn law(&self) -> ForceLaw {
         ForceLaw { drag: self.drag.value, friction: self.friction.value }
     }
 }
 
 /// The readings of one impact at the depths that it passes before it stops.
-#[must_use]
 pub fn readings(record: &Record, component: Component) -> Vec<Option<Reading>> {
     let path = match component {
         Component::Horizontal => &record.range,
@@ -102,7 +99,6 @@ pub fn readings(record: &Record, component: Component) -> Vec<Option<Reading>> {
 
 /// The law `α v² + f y` of the impacts of one reading at one angle. Errors are those of leaving out one
 /// impact after another: the forces of one path are not independent. `None` where the paths do not decide.
-#[must_use]
 pub fn separate(cells: &[&Cell], component: Component) -> Option<Separated> {
     let impacts: Vec<(usize, Vec<Option<Reading>>)> = cells
         .iter()
@@ -143,7 +139,6 @@ pub fn separate(cells: &[&Cell], component: Component) -> Option<Separated> {
 }
 
 /// The forces of a cell at each depth, averaged over its positions.
-#[must_use]
 pub fn mean_readings(cell: &Cell, component: Component) -> Vec<Reading> {
     let all: Vec<Vec<Option<Reading>>> =
         cell.records.iter().map(|record| readings(record, component)).collect();

@@ -5,7 +5,6 @@ use super::matrix::{self, Cell, READINGS};
 use crate::published::row::Table;
 
 /// Mean absolute deviations of `quantities` from their published curves, a line per angle and one of their means.
-#[must_use]
 pub fn table(quantities: [&Quantity; 2], cells: &[Cell]) -> Table {
     let goals = quantities.map(|one| format!("{:.0} % of the {}", one.goal.half, one.name));
     let caption = format!(

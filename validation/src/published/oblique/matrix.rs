@@ -94,7 +94,6 @@ pub struct Matrix {
 
 impl Matrix {
     /// What it cost to run.
-    #[must_use]
     pub fn cost(&self) -> String {
         let records = || self.cells.iter().flat_map(|cell| &cell.records);
         let steps: f64 = records().map(|one| one.steps as f64 * one.grains as f64).sum();
@@ -102,7 +101,6 @@ impl Matrix {
     }
 
     /// What a report has to say of it while impacts are missing.
-    #[must_use]
     pub fn note(&self) -> Option<String> {
         let there: usize = self.cells.iter().map(|cell| cell.records.len()).sum();
         (there < self.asked).then(|| format!("Judged by {there} of {} impacts.", self.asked))
@@ -179,7 +177,6 @@ fn turn(cell: &Cell, position: usize) -> usize {
 }
 
 /// Angles (deg) of which there are cells, in their order.
-#[must_use]
 pub fn angles(cells: &[Cell]) -> Vec<f64> {
     let mut angles: Vec<f64> = cells.iter().map(|cell| cell.published.angle_deg).collect();
     angles.sort_by(f64::total_cmp);
@@ -188,7 +185,6 @@ pub fn angles(cells: &[Cell]) -> Vec<f64> {
 }
 
 /// The cells of one reading at one angle (deg).
-#[must_use]
 pub fn of<'a>(cells: &'a [Cell], reading: &Reading, angle_deg: f64) -> Vec<&'a Cell> {
     let same = |cell: &&Cell| {
         cell.reading == reading && (cell.published.angle_deg - angle_deg).abs() < 1e-9

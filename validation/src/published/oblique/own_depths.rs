@@ -17,7 +17,6 @@ const DRAGS: [f64; 2] = [2e-3, 0.8];
 
 /// The law that comes nearest to the depths of Table 1, as shares of them; `None` where the article claims no
 /// vertical law.
-#[must_use]
 pub fn law(published: &Published) -> Option<ForceLaw> {
     published.vertical?;
     let sine = libm::sin(published.angle_deg.to_radians());

@@ -47,7 +47,6 @@ pub struct Published {
 
 impl Line {
     /// Its value at the impact speed `v` (m/s).
-    #[must_use]
     pub fn at(&self, v: f64) -> f64 {
         self.slope * v + self.intercept
     }
@@ -55,7 +54,6 @@ impl Line {
 
 impl StoppingTime {
     /// The stopping time (s) at the impact speed `v` (m/s).
-    #[must_use]
     pub fn at(&self, v: f64) -> f64 {
         match self {
             Self::Exponential([eta_1, eta_2, eta_3]) => eta_1 * libm::exp(-eta_2 * v) + eta_3,
@@ -65,7 +63,6 @@ impl StoppingTime {
 }
 
 /// What is published of `angle_deg`; `None` for an angle that is not in the tables.
-#[must_use]
 pub fn published(angle_deg: f64) -> Option<&'static Published> {
     PUBLISHED.iter().find(|one| (one.angle_deg - angle_deg).abs() < 1e-9)
 }
