@@ -144,6 +144,12 @@ fn has_formula(diagnosis: &Diagnosis) -> bool {
     diagnosis.missing_force.as_ref().is_some_and(|force| force.formula.is_some())
 }
 
+/// Whether `effect` is fitted with an amplitude that changes nothing.
+fn is_nil(diagnosis: &Diagnosis, effect: &str) -> bool {
+    let fitted = diagnosis.ranking.iter().find(|one| one.id == effect);
+    fitted.and_then(|one| one.q).is_some_and(|q| q.abs() < f64::MIN_POSITIVE)
+}
+
 /// A model for each effect worth adding: names and texts of files.
 fn propose(
     model: &Candidate,
@@ -151,10 +157,12 @@ fn propose(
     diagnosis: &Diagnosis,
 ) -> Result<Vec<(String, String)>, CommandError> {
     let mut proposals: Vec<Vec<&str>> = match diagnosis.verdict {
-        Verdict::Supported => vec![diagnosis.effects.iter().map(String::as_str).collect()],
-        Verdict::Pair => vec![diagnosis.effects.iter().map(String::as_str).collect()],
+        Verdict::Supported | Verdict::Pair => {
+            vec![diagnosis.effects.iter().map(String::as_str).collect()]
+        }
         Verdict::NotSeparable => {
-            diagnosis.not_separable.iter().map(|id| vec![id.as_str()]).collect()
+            let ids = diagnosis.not_separable.iter().map(String::as_str);
+            ids.filter(|id| !is_nil(diagnosis, id)).map(|id| vec![id]).collect()
         }
         _ => Vec::new(),
     };

@@ -201,9 +201,10 @@ impl BedForward {
 
     /// Whether a parameter that all runs share is in `fit` farther from what is known of it than one may expect.
     pub(super) fn is_strained(&self, fit: &Fit) -> bool {
-        let each = self.parameters.iter().zip(&fit.point.parameters);
-        let mut known = each.filter_map(|(one, value)| one.prior.map(|prior| (prior, value)));
-        known.any(|(prior, value)| is_far(prior, *value))
+        let each = self.parameters.iter().zip(&fit.point.parameters).enumerate();
+        let mut known =
+            each.filter_map(|(at, (one, value))| one.prior.map(|prior| (at, prior, *value)));
+        known.any(|(at, prior, value)| is_far(prior, value, fit.standard_error(at).unwrap_or(0.0)))
     }
 
     /// Scatter of the runs of the model from bed to bed: relative standard deviations of coefficients and

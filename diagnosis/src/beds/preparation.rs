@@ -33,8 +33,12 @@ pub mod defaults {
 const NAMED: f64 = 4.0;
 const WORTH_IT: f64 = 2.0;
 
-/// Standard deviations of what is known of a shared parameter beyond which it explains nothing by itself.
-const STRAINED: f64 = 3.0;
+/// Standard errors by which data may move a shared parameter from what is known of it, before it explains nothing by
+/// itself: once in a hundred such fits, as [`ALPHA`](crate::diagnose::ALPHA) has it, they do so by chance.
+const STRAINED: f64 = 2.576;
+
+/// Share of its prior's standard deviation above which the standard error of a parameter says that data tell nothing of it.
+const UNMOVED: f64 = 0.95;
 
 /// Ratio of the densities of two beds beyond which one is in another unit.
 const ABSURD: f64 = 5.0;
@@ -419,8 +423,11 @@ fn words(changes: &[Change]) -> String {
 }
 
 /// Whether `value` is farther from what is known beforehand than one may expect.
-pub(super) fn is_far(prior: Prior, value: f64) -> bool {
-    (value - prior.mean).abs() > STRAINED * prior.sigma
+pub(super) fn is_far(prior: Prior, value: f64, se: f64) -> bool {
+    // Prior and data agree in the posterior mean only as far as either weighs: its variance before the data are seen is
+    // what the data take from that of the prior.
+    let moved = se.min(UNMOVED * prior.sigma);
+    (value - prior.mean).abs() > STRAINED * (prior.sigma.powi(2) - moved.powi(2)).sqrt()
 }
 
 /// The differences and what the fit finds of the packing as one list, named where they are beyond their errors. A packing
@@ -430,7 +437,9 @@ pub(super) fn listed(
     mut fitted: Vec<ApparatusError>,
 ) -> Vec<ApparatusError> {
     for one in &mut fitted {
-        let is_possible = preparation.packing.is_none_or(|prior| !is_far(prior, one.value));
+        let is_possible = preparation
+            .packing
+            .is_none_or(|prior| !is_far(prior, one.value, one.se.unwrap_or(0.0)));
         one.value += preparation.moved;
         // Unlike an error of the apparatus, another bed is named however small the difference.
         let is_other = one.se.is_some_and(|se| Known { value: one.value, se }.is_beyond(NAMED));

@@ -245,6 +245,53 @@ fn with_formula(
     Ok((found, Formula::kept(problem, by, baseline, refitted)?))
 }
 
+/// Whether a force of some form exceeds none by `least` log odds or more in the model of `fitted`, as the first step of the search
+/// for it sees it, along the motion.
+///
+/// # Errors
+/// If predictions do not have the layout of the measurements.
+pub(crate) fn is_a_force_left(
+    problem: &FitProblem<'_>,
+    fitted: &Fitted,
+    least: f64,
+) -> Result<bool, FitError> {
+    let Some(by) = problem.forward.passages() else { return Ok(false) };
+    let is_clear =
+        |(under, found): &(Fitted, Found)| found.evidence(under) + 0.5 * fitted.deviance() >= least;
+    let first = if_told(look(problem, by, fitted.clone(), false))?;
+    Ok(first.as_ref().is_some_and(is_clear)
+        || with_less_scatter(problem, by, fitted).any(|one| is_clear(&one)))
+}
+
+/// The first step of the search for a force, with the model fitted under the noise of `under`.
+fn look(
+    problem: &FitProblem<'_>,
+    by: &dyn Passages,
+    under: Fitted,
+    is_sideways: bool,
+) -> Result<Option<(Fitted, Found)>, FitError> {
+    let grid = response::grid(problem, is_sideways);
+    let nothing = Field { values: vec![0.0; grid.len()], grid };
+    let found = Found::around(problem, by, (&under, under.fit.clone()), nothing)?;
+    Ok(found.map(|found| (under, found)))
+}
+
+/// The same under less and less of the scatter between conditions of `baseline`. A noise under which the model cannot be fitted
+/// is left out.
+fn with_less_scatter(
+    problem: &FitProblem<'_>,
+    by: &dyn Passages,
+    baseline: &Fitted,
+) -> impl Iterator<Item = (Fitted, Found)> {
+    let Between { sd, sigma, .. } = baseline.noise.sessions;
+    // In steps of one ratio from what the fit takes for scatter to what is known of it beforehand, then none.
+    let steps = [libm::cbrt(sigma * sd * sd), libm::cbrt(sigma * sigma * sd), sigma, 0.0];
+    steps.into_iter().filter(move |less| *less < sd).filter_map(move |less| {
+        let under = problem.with_scatter_between_conditions(less, baseline).ok()?;
+        look(problem, by, under, false).ok().flatten()
+    })
+}
+
 /// The most likely force, with the model fitted under its noise. A model that lacks a force takes it for scatter between
 /// conditions, so the noise of `baseline` is tried with less of that scatter too.
 fn most_likely(
@@ -252,22 +299,9 @@ fn most_likely(
     by: &dyn Passages,
     baseline: &Fitted,
 ) -> Result<Option<AnyForce>, FitError> {
-    let look = |under: Fitted, is_sideways: bool| -> Result<Option<(Fitted, Found)>, FitError> {
-        let grid = response::grid(problem, is_sideways);
-        let nothing = Field { values: vec![0.0; grid.len()], grid };
-        let found = Found::around(problem, by, (&under, under.fit.clone()), nothing)?;
-        Ok(found.map(|found| (under, found)))
-    };
-    let Some(first) = look(baseline.clone(), false)? else { return Ok(None) };
+    let Some(first) = look(problem, by, baseline.clone(), false)? else { return Ok(None) };
     let mut begun = vec![first];
-    let Between { sd, sigma, .. } = baseline.noise.sessions;
-    // In steps of one ratio from what the fit takes for scatter to what is known of it beforehand, then none.
-    let steps = [libm::cbrt(sigma * sd * sd), libm::cbrt(sigma * sigma * sd), sigma, 0.0];
-    for less in steps.into_iter().filter(|less| *less < sd) {
-        // A noise under which the model cannot be fitted is no candidate.
-        let fitted = problem.with_scatter_between_conditions(less, baseline).ok();
-        begun.extend(fitted.and_then(|under| look(under, false).ok().flatten()));
-    }
+    begun.extend(with_less_scatter(problem, by, baseline));
     let evidence = |(under, found): &(Fitted, Found)| {
         let of_more = if found.field.grid.is_sideways { CLEARLY } else { 0.0 };
         found.evidence(under) - of_more
@@ -277,7 +311,7 @@ fn most_likely(
     let is_oblique = |&condition: &usize| problem.set.conditions[condition].angle_deg < OBLIQUE;
     if problem.observed.fit.iter().any(is_oblique) {
         let best = evidence(&begun[0]);
-        let both = look(begun[0].0.clone(), true)?;
+        let both = look(problem, by, begun[0].0.clone(), true)?;
         begun.extend(both.filter(|both| evidence(both) > best));
     }
     let mut settled = Vec::with_capacity(begun.len());

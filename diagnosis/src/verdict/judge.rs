@@ -12,7 +12,7 @@ use crate::forward::ParameterKind;
 use crate::misfit::force_error::ForceErrors;
 use crate::misfit::held_out::HeldOut;
 use crate::misfit::lack_of_fit::lack_of_fit;
-use crate::missing_force::{AnyForce, any_force};
+use crate::missing_force::{AnyForce, any_force, is_a_force_left};
 use crate::noise::Noise;
 use crate::ranking::pair::{Pair, best_pair};
 use crate::ranking::score::Ranking;
@@ -43,6 +43,9 @@ const NEAREST: f64 = 6.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.
 const MORE_THAN_SESSIONS: f64 = 7.0;
+
+/// Log odds (20 to 1) from which a force of any form is missing beside effects with which conditions still differ.
+const BESIDE: f64 = 3.0;
 
 /// Fall of χ² from which the data ask for another form than the listed one: once in a hundred by chance, where its five numbers
 /// are free.
@@ -164,7 +167,8 @@ impl Judge<'_> {
         let is_most = is_judged && self.alike.len() == 1 && held_out.takes_most();
         let is_named = is_explained || is_most;
         let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
-        if is_named && !is_one_of_many {
+        let leaves_a_force = is_named && !is_one_of_many && self.leaves_a_force(&self.leader)?;
+        if is_named && !is_one_of_many && !leaves_a_force {
             let leaves_more =
                 held_out.leaves_more_than_noise() == Some(true) && held_out.leaves_a_part();
             let found = self.one(grounds, held_out)?;
@@ -185,7 +189,13 @@ impl Judge<'_> {
             found.strength = Strength::of(&found.strength_reasons);
             return Ok(found);
         }
-        let hint = explains_a_part(&leader, &held_out);
+        let hint = match leaves_a_force {
+            true => format!(
+                "{leader} is nearest among the listed effects; with it, conditions still differ by more than their repeats show, and \
+                 by a force that depends on speed, angle or body"
+            ),
+            false => explains_a_part(&leader, &held_out),
+        };
         match is_judged {
             true => self.refuse(Grounds { hint, ..grounds }),
             // Impacts on fresh beds decide whether what is left matters.
@@ -242,6 +252,15 @@ impl Judge<'_> {
             () => NOT_ANY,
         };
         self.is_no_likelier(&self.leader, least)
+    }
+
+    /// Whether conditions differ with the effects of `fitted` by more than their repeats show, and not as beds do that are poured
+    /// anew, at random: a force of some form explains the differences far better.
+    fn leaves_a_force(&self, fitted: &Fitted) -> Result<bool, FitError> {
+        if fitted.noise.sessions.gain < SEEN || !self.problem.forward.is_judged_by_held_out() {
+            return Ok(false);
+        }
+        is_a_force_left(self.problem, fitted, BESIDE)
     }
 
     /// Whether the effects of `fitted` exceed a force of any form by less than `least` in log odds.
@@ -335,7 +354,8 @@ impl Judge<'_> {
             && !held_out.is_shown_by_few()
             && self.too_small(&held_out).is_none()
             && !held_out.leaves_a_third()
-            && !self.is_no_likelier(&pair.fitted, NOT_ANY)?;
+            && !self.is_no_likelier(&pair.fitted, NOT_ANY)?
+            && !self.leaves_a_force(&pair.fitted)?;
         Ok(stands.then_some(Two { pair, p_lof, held_out }))
     }
 

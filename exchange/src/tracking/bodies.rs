@@ -319,6 +319,26 @@ pub(super) fn set_aside(
     })
 }
 
+/// A warning if the name of the run `run` states another mass than that of its `body`, as `h10_33g` does.
+pub(super) fn of_named_mass(run: &str, body: &Body) -> Option<String> {
+    /// Largest relative difference of a rounded mass.
+    const ROUNDED: f64 = 0.1;
+    let words = run.split(|c: char| !c.is_alphanumeric() && c != '.');
+    let mut stated = words.filter(|word| {
+        let unit = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+        unit.len() < word.len() && ["g", "kg", "mg"].contains(&unit)
+    });
+    let word = stated.find(|word| {
+        let value = parse(word, Dimension::MASS).ok();
+        value.is_some_and(|value| (value / body.mass - 1.0).abs() > ROUNDED)
+    })?;
+    Some(format!(
+        "Warning: the run {run} has {word} in its name, and its body is taken to weigh {:.5} g. If bodies differ, give a table of \
+         them with --bodies, and leave --mass out.",
+        1e3 * body.mass
+    ))
+}
+
 /// Whether two names of bodies are one, but for capitals.
 fn is_called(one: &str, other: &str) -> bool {
     one.to_lowercase() == other.to_lowercase()

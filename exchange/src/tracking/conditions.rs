@@ -164,16 +164,19 @@ fn by_speed(members: &[&Member<'_>]) -> Vec<String> {
     let mut order: Vec<usize> = (0..members.len()).collect();
     let speed = |at: usize| members[at].speed.value;
     order.sort_by(|a, b| speed(*a).total_cmp(&speed(*b)).then(a.cmp(b)));
+    let apart = apart(&order.iter().map(|&at| speed(at)).collect::<Vec<_>>());
     // The members of a group, the slowest first.
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for at in order {
         let fits = |group: &&mut Vec<usize>| {
             let (first, own) = (members[group[0]], members[at]);
+            let fastest = group[group.len() - 1];
             let allowed =
                 (ALIKE * first.speed.value).max(ERRORS * libm::hypot(first.speed.se, own.speed.se));
             first.body == own.body
                 && (first.angle - own.angle).abs() < ANGLE
                 && own.speed.value - first.speed.value <= allowed
+                && own.speed.value / speed(fastest) - 1.0 < apart
         };
         match groups.iter_mut().find(fits) {
             Some(group) => group.push(at),
@@ -200,6 +203,20 @@ fn by_speed(members: &[&Member<'_>]) -> Vec<String> {
     }
     let of = |at: usize| groups.iter().position(|group| group.contains(&at)).unwrap_or_default();
     (0..members.len()).map(|at| names[of(at)].clone()).collect()
+}
+
+/// Share of a speed from which neighbours among `speeds`, the slowest first, are of two conditions: gaps of repeats are many, and
+/// all others are several times as wide. Infinite where gaps say nothing.
+fn apart(speeds: &[f64]) -> f64 {
+    /// Times the widest gap within conditions that the narrowest between them is wide, and its least share of the speed.
+    const WIDER: f64 = 4.0;
+    const LEAST: f64 = 0.025;
+    let mut gaps: Vec<f64> = speeds.windows(2).map(|pair| pair[1] / pair[0] - 1.0).collect();
+    gaps.sort_by(f64::total_cmp);
+    // At least half of the gaps are within conditions of two repeats or more.
+    let jump = (gaps.len().div_ceil(2)..gaps.len())
+        .find(|&at| gaps[at] >= LEAST && gaps[at] > WIDER * gaps[at - 1]);
+    jump.map_or(f64::INFINITY, |at| gaps[at])
 }
 
 /// A warning if by their names no two runs are repeats, though some of one body are as fast.

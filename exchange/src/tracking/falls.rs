@@ -3,8 +3,10 @@
 use measurements::{Reading, deviation_of, median};
 
 use super::begun::Begun;
+use super::fault::Fault;
 use super::motion::Path;
 use super::run::Run;
+use super::scales::ALLOWED;
 use super::settings::Settings;
 
 /// Smallest relative difference from gravity that brings a warning, and in standard errors: of all runs together, and of one.
@@ -19,15 +21,47 @@ const READABLE: f64 = 3.0;
 const LISTED: usize = 4;
 
 /// A warning if the acceleration before contact differs clearly from gravity, in all runs together or in some of them.
-pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
+///
+/// # Errors
+/// If that of all together is by its error none that guides or air explain.
+pub(super) fn off_gravity(
+    begun: &[Begun],
+    settings: &Settings<'_>,
+) -> Result<Option<String>, Fault> {
     let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
+    let Some(falls) = falls(&paths, begun, settings) else { return Ok(None) };
+    let all = mean(&falls);
+    let ends = [all.value - OF_ALL * all.se, all.value + OF_ALL * all.se];
+    let [least, most] = ends.map(|end| end / settings.gravity);
+    if !settings.trusts_units && (least > 1.0 + ALLOWED || most < 1.0 - ALLOWED) {
+        let scales = paths[0].scales(&paths, settings)?;
+        return Err(paths[0].contradicts_gravity(
+            all.value / settings.gravity,
+            scales.time.1,
+            settings,
+        ));
+    }
+    Ok(of_falls(&falls, all, settings.gravity))
+}
+
+/// Accelerations (m/s²) before contact, with the names of their runs.
+fn falls<'a>(
+    paths: &[Path],
+    begun: &'a [Begun],
+    settings: &Settings<'_>,
+) -> Option<Vec<(&'a str, Reading)>> {
     let mut falls: Vec<(&str, Reading)> = Vec::new();
     for (path, one) in paths.iter().zip(begun) {
-        let scales = path.scales(&paths, settings).ok()?;
+        let scales = path.scales(paths, settings).ok()?;
         // The other runs are judged even if one shows no fall.
         let fall = scales.fall(path).filter(|fall| fall.se > 0.0 && fall.se.is_finite());
         falls.extend(fall.map(|fall| (one.name.as_str(), fall)));
     }
+    (!falls.is_empty()).then_some(falls)
+}
+
+/// Of all `falls` together.
+fn mean(falls: &[(&str, Reading)]) -> Reading {
     let weight = |fall: &Reading| fall.se.powi(-2);
     let weights: f64 = falls.iter().map(|(_, fall)| weight(fall)).sum();
     let mean = falls.iter().map(|(_, fall)| weight(fall) * fall.value).sum::<f64>() / weights;
@@ -35,10 +69,12 @@ pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<St
     let misfit: f64 =
         falls.iter().map(|(_, fall)| weight(fall) * (fall.value - mean).powi(2)).sum();
     let excess = (misfit / (falls.len() as f64 - 1.0).max(1.0)).max(1.0);
-    let all = Reading { value: mean, se: (excess / weights).sqrt() };
+    Reading { value: mean, se: (excess / weights).sqrt() }
+}
+
+fn of_falls(falls: &[(&str, Reading)], all: Reading, gravity: f64) -> Option<String> {
     let question = "are the scale, the unit and the frame rate right? A guide or air brakes too; speeds and depths are as the \
                     table has them.";
-    let gravity = settings.gravity;
     if is_off(all, gravity, OF_ALL) {
         let Reading { value, se } = all;
         return Some(format!(
@@ -67,10 +103,15 @@ const FEWEST: (usize, usize) = (5, 3);
 const SAME: f64 = 0.15;
 const OTHER: f64 = 0.3;
 
-/// A warning if names of `runs` state heights, as `h050` does, and some speeds contradict them.
+/// What a height in a name may be counted in (m), and the relative difference up to which it is that; and with the unit in the
+/// names.
+const UNITS: [f64; 4] = [1.0, 1e-2, 1e-3, 0.0254];
+const NEAR: (f64, f64) = (0.2, 0.1);
+
+/// A warning if names of `runs` state heights, as `h050` and `h10cm` do, and speeds contradict them, some or all.
 pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
     let of = |run: &Run| {
-        let named = height_in(&run.name)?;
+        let (named, _) = height_in(&run.name)?;
         let fallen = run.speed.value.powi(2) / (2.0 * gravity);
         Some((run.name.clone(), named, fallen / named))
     };
@@ -78,13 +119,18 @@ pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
     let mut heights: Vec<f64> = all.iter().map(|one| one.1).collect();
     heights.sort_by(f64::total_cmp);
     heights.dedup_by(|a, b| (*a / *b - 1.0).abs() < SAME);
-    if all.len() < FEWEST.0 || all.len() < runs.len() || heights.len() < FEWEST.1 {
-        return None;
-    }
     // The ratio of most runs is the unit of the numbers in the names.
     let unit = median(all.iter().map(|one| one.2))?;
     let off = |one: &(String, f64, f64)| (one.2 / unit - 1.0).abs();
     let as_named = all.iter().filter(|one| off(one) < SAME).count();
+    let stated = runs.iter().map(|run| height_in(&run.name).and_then(|(_, unit)| unit));
+    let stated = stated.reduce(|one, other| one.filter(|_| one == other)).flatten();
+    if as_named == runs.len() && (stated.is_some() || heights.len() >= FEWEST.1) {
+        return off_all_names(&heights, unit, stated);
+    }
+    if all.len() < FEWEST.0 || all.len() < runs.len() || heights.len() < FEWEST.1 {
+        return None;
+    }
     let others: Vec<_> = all.iter().filter(|one| off(one) > OTHER).collect();
     if 3 * as_named < all.len() || as_named + others.len() < all.len() || others.is_empty() {
         return None;
@@ -99,13 +145,50 @@ pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
     ))
 }
 
-/// The number in a word of `name` that consists of `h` and digits.
-fn height_in(name: &str) -> Option<f64> {
+/// A warning if speeds are those of the `heights` in names only in a `unit` (m) that is none, or not the one `stated`.
+fn off_all_names(heights: &[f64], unit: f64, stated: Option<f64>) -> Option<String> {
+    let off = |known: f64| (unit / known - 1.0).abs();
+    let known = stated.or_else(|| UNITS.into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b))))?;
+    if off(known) < if stated.is_some() { NEAR.1 } else { NEAR.0 } {
+        return None;
+    }
+    let each = |of: &dyn Fn(f64) -> String| {
+        heights.iter().map(|one| of(*one)).collect::<Vec<_>>().join(", ")
+    };
+    let named = each(&|height| match stated {
+        Some(unit) => format!("{:.3} m", height * unit),
+        None => format!("{height}"),
+    });
+    let fallen = each(&|height| format!("{:.3} m", height * unit));
+    // Speeds are lengths over times, and heights of fall their squares.
+    let lengths = [1.0, 1e-2, 1e-3].map(|known: f64| (known / unit).sqrt());
+    let nearest = |one: &f64| libm::log(*one).abs();
+    let length = stated.map_or_else(
+        || lengths.into_iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b))),
+        |unit_of_names| Some((unit_of_names / unit).sqrt()),
+    )?;
+    Some(format!(
+        "Warning: by their names the bodies fall from {named}, and by their speeds at contact from {fallen}. Are the scale, the \
+         unit and the frame rate right? Lengths {length:.3} times as large would fit. A guide, a throw or another zero of the \
+         heights does this too."
+    ))
+}
+
+/// The number in a word of `name` that consists of `h` and digits, and its unit (m), if one stands behind.
+fn height_in(name: &str) -> Option<(f64, Option<f64>)> {
     let words = name.split(|c: char| !c.is_alphanumeric() && c != '.');
     let mut heights = words.filter_map(|word| {
         let rest = word.strip_prefix(['h', 'H'])?;
         let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
-        rest[..end].parse::<f64>().ok().filter(|height| *height > 0.0)
+        let unit = match &rest[end..] {
+            "m" => Some(1.0),
+            "cm" => Some(1e-2),
+            "mm" => Some(1e-3),
+            "in" => Some(0.0254),
+            _ => None,
+        };
+        let height = rest[..end].parse::<f64>().ok().filter(|height| *height > 0.0)?;
+        Some((height, unit))
     });
     heights.next()
 }

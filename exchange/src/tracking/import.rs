@@ -6,7 +6,7 @@ use engine::units::Dimension;
 use measurements::{Contact, Frame, Reading, Tip, median};
 
 use super::begun::{Begun, begin, tracks};
-use super::bodies::{Bodies, set_aside};
+use super::bodies::{Bodies, of_named_mass, set_aside};
 use super::conditions::{self, Grouping, Member};
 use super::fault::{Fault, TrackingError};
 use super::lost::lost_from;
@@ -36,10 +36,11 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     let (tracks, hashes) = tracks(&paths, &settings)?;
     let begun = begin(tracks, &bodies, &settings)?;
     let mut told = told(&begun);
-    told.extend(falls::off_gravity(&begun, &settings));
+    told.extend(falls::off_gravity(&begun, &settings).map_err(|fault| vec![fault])?);
     told.extend(falls::of_axes(&begun));
     told.extend(of_one_body(&begun));
     told.extend(begun.iter().find_map(|one| set_aside(&one.name, &one.labels, &settings)));
+    told.extend(begun.iter().find_map(|one| of_named_mass(&one.name, &one.body)));
     let Finished { runs, understood, level, tilt, grouping, told: seen } =
         finish(begun, &settings)?;
     told.extend(seen);
@@ -418,14 +419,15 @@ const READ: f64 = 1e-3;
 /// Replaces speeds by those of stated heights of release.
 fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<Option<String>, Vec<Fault>> {
     /// Standard errors, and share of the speed, beyond which the frames say another height.
-    const CLEAR: (f64, f64) = (5.0, 0.02);
+    const CLEAR: (f64, f64) = (3.0, 0.02);
     let mut warning = None;
     for run in runs {
         let height = settings.quantity("drop_height", Dimension::LENGTH, &run.labels);
         if let Some(height) = height.map_err(|fault| vec![fault])? {
             let value = (2.0 * settings.gravity * height).sqrt();
             let Reading { value: seen, se } = run.speed;
-            let (off, error) = ((seen - value).abs(), CLEAR.0 * se);
+            let (off, error) =
+                ((seen - value).abs(), CLEAR.0 * libm::hypot(se, settings.gravity * READ / value));
             let both = || {
                 format!(
                     "the run {} meets the bed at {seen:.3} ± {se:.3} m/s by its frames, and from {height} m it would at {value:.3}",

@@ -383,8 +383,8 @@ pub(super) fn contact(
             Err("the body is never braked: the frames behind contact are missing")
         }
         () if !sees_surface && departure.is_braked_at_first > LIKELY => Err(
-            "no free fall is seen before the body is braked: give more frames before contact, or the reading of the surface as \
-             --surface",
+            "no free fall is seen before the body is braked: give more frames before contact, or, if it is not given, the reading of \
+             the surface as --surface",
         ),
         () => Ok(departure),
     }

@@ -95,7 +95,7 @@ impl Pattern {
                 }
             }
         }
-        match name.trim_matches(['_', '-', ' ']) {
+        match name.trim_matches(['_', '-', ' ', '/', '.']) {
             "" => "all".to_owned(),
             name => name.to_owned(),
         }

@@ -1,7 +1,7 @@
 //! Units of paths: as tables and options say them, or as the fall before contact shows them.
 
 use engine::units::Dimension;
-use measurements::{Frame, Reading};
+use measurements::{Frame, Reading, median};
 
 use super::fault::Fault;
 use super::motion::Path;
@@ -10,10 +10,16 @@ use super::track::Track;
 use super::units::Unit;
 
 /// Share of gravity by which the acceleration of a fall may be off: guides and air take some of it.
-const ALLOWED: f64 = 0.3;
+pub(super) const ALLOWED: f64 = 0.3;
 
 /// Relative difference up to which a pixel may be a whole unit.
 const WHOLE: f64 = 0.08;
+
+/// Steps of time below this are of seconds, ways of a body below the first of metres, and below the second of centimetres, most
+/// likely.
+const SECONDS: f64 = 0.05;
+const METRES: f64 = 1.0;
+const CENTIMETRES: f64 = 20.0;
 
 /// Units of a path, with their size in SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,11 +113,17 @@ impl Path {
         {
             let ratio = ratio(acceleration, time.1, length.1);
             if self.is_off(ratio, ALLOWED) {
-                return Err(self.contradicts_gravity(ratio, settings));
+                return Err(self.contradicts_gravity(ratio, time.1, settings));
             }
         }
         let way = self.track.forward.as_ref().and_then(|x| x.unit.si(Dimension::LENGTH));
         Ok(Scales { way: way.unwrap_or(length.1), time, length, is_read })
+    }
+
+    /// The usual time from row to row, in the unit of the table.
+    fn step(&self) -> f64 {
+        let steps = self.frames.windows(2).map(|pair| pair[1].t - pair[0].t);
+        median(steps).unwrap_or(f64::INFINITY)
     }
 
     /// Whether another table counts the same.
@@ -160,19 +172,39 @@ impl Path {
         Fault::new(&self.track.file, what, right)
     }
 
+    /// In which unit a drop would most likely have such numbers.
+    fn length_unit(&self) -> &'static str {
+        let [low, high] = [f64::min, f64::max]
+            .map(|end| self.frames.iter().map(|frame| frame.z).reduce(end).unwrap_or_default());
+        match high - low {
+            way if way < METRES => "m",
+            way if way < CENTIMETRES => "cm",
+            _ => "mm",
+        }
+    }
+
     fn without_unit(&self, has_no_time: bool) -> Fault {
         let Track { vertical, time, file, .. } = &self.track;
         let (name, flag) = match has_no_time {
             true => (
                 format!("`{}` and `{}`", time.name, vertical.name),
-                "--time-unit ms --length-unit cm",
+                match (self.step() < SECONDS, self.length_unit()) {
+                    (true, length) => format!("--time-unit s --length-unit {length}"),
+                    (false, length) => format!("--time-unit ms --length-unit {length}"),
+                },
             ),
-            false => (format!("`{}`", vertical.name), "--length-unit cm"),
+            false => {
+                (format!("`{}`", vertical.name), format!("--length-unit {}", self.length_unit()))
+            }
         };
         let what = format!(
             "the unit of {name} is not said, and too little of the fall is seen to find it"
         );
-        Fault::new(file, what, format!("write {flag}, or (cm) behind the name"))
+        Fault::new(
+            file,
+            what,
+            format!("write {flag}, if that is it, or the unit in brackets behind the name"),
+        )
     }
 
     fn no_unit_fits(&self, acceleration: f64, settings: &Settings<'_>) -> Fault {
@@ -193,7 +225,12 @@ impl Path {
         Fault::new(&self.track.file, what, format!("write --length-unit cm{pixel}"))
     }
 
-    fn contradicts_gravity(&self, ratio: f64, settings: &Settings<'_>) -> Fault {
+    pub(super) fn contradicts_gravity(
+        &self,
+        ratio: f64,
+        time: f64,
+        settings: &Settings<'_>,
+    ) -> Fault {
         let gravity = settings.gravity;
         let near = |factor: f64| (ratio * factor - 1.0).abs() <= ALLOWED;
         let guess = match () {
@@ -219,10 +256,15 @@ impl Path {
             () if near(1e-1) || near(1e-2) || near(1e-3) => {
                 "is the unit of length smaller? --length-unit says so. ".to_owned()
             }
-            () => format!(
-                "a clip played {:.1} times as slow has this: --rate 650Hz counts frames instead. ",
-                (1.0 / ratio).sqrt()
-            ),
+            () => {
+                let slow = (1.0 / ratio).sqrt();
+                let rows = 1.0 / (time * self.step());
+                format!(
+                    "a clip played {slow:.1} times as slow has this, and would be taken at some {:.0} frames a second: --rate and \
+                     the rate of the camera counts frames instead. ",
+                    rows * slow
+                )
+            }
         };
         let what = format!(
             "by its units the fall before contact accelerates at {:.4} m/s^2, not at {gravity}",

@@ -1,6 +1,6 @@
 //! Text as a sheet: encoding, line ends, separator and decimals are found out.
 
-use encoding_rs::WINDOWS_1252;
+use encoding_rs::{SHIFT_JIS, WINDOWS_1252};
 
 use super::fault::Fault;
 use super::sheet::{Number, Row, Sheet, number};
@@ -124,7 +124,8 @@ fn without_stamp(line: &str) -> &str {
     line.split_once(" -> ").filter(|(stamp, _)| is_time(stamp)).map_or(line, |(_, rest)| rest)
 }
 
-/// UTF-8 or UTF-16 by its byte order mark, else UTF-8, else Windows-1252, which holds Latin-1.
+/// UTF-8 or UTF-16 by its byte order mark, or UTF-16 by its zeros, else UTF-8, else Shift-JIS where that gives Japanese words,
+/// else Windows-1252, which holds Latin-1.
 fn decode(bytes: &[u8], notes: &mut Vec<String>) -> String {
     let wide = |bytes: &[u8], of: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| of([pair[0], pair[1]])).collect();
@@ -134,14 +135,37 @@ fn decode(bytes: &[u8], notes: &mut Vec<String>) -> String {
         [0xef, 0xbb, 0xbf, rest @ ..] => String::from_utf8_lossy(rest).into_owned(),
         [0xff, 0xfe, rest @ ..] => wide(rest, u16::from_le_bytes),
         [0xfe, 0xff, rest @ ..] => wide(rest, u16::from_be_bytes),
+        [0, ..] if is_wide(bytes, 0) => wide(bytes, u16::from_be_bytes),
+        [_, 0, ..] if is_wide(bytes, 1) => wide(bytes, u16::from_le_bytes),
         _ => match std::str::from_utf8(bytes) {
             Ok(text) => text.to_owned(),
             Err(_) => {
-                notes.push("it is not UTF-8 and was read as Windows-1252".to_owned());
-                WINDOWS_1252.decode(bytes).0.into_owned()
+                let (encoding, text) = match japanese(bytes) {
+                    Some(text) => ("Shift-JIS", text),
+                    None => ("Windows-1252", WINDOWS_1252.decode(bytes).0.into_owned()),
+                };
+                notes.push(format!("it is not UTF-8 and was read as {encoding}"));
+                text
             }
         },
     }
+}
+
+/// Whether nearly every second of `bytes`, from `first` on, is zero, as in UTF-16 of Latin letters.
+fn is_wide(bytes: &[u8], first: usize) -> bool {
+    let high = bytes.iter().skip(first).step_by(2);
+    let zeros = high.clone().filter(|byte| **byte == 0).count();
+    bytes.len().is_multiple_of(2) && 10 * zeros >= 9 * high.count()
+}
+
+/// `bytes` from Shift-JIS, if that gives words of kana or of several kanji: single ones are accented Latin letters misread.
+fn japanese(bytes: &[u8]) -> Option<String> {
+    let text = SHIFT_JIS.decode_without_bom_handling_and_without_replacement(bytes)?;
+    let letters: Vec<char> = text.chars().collect();
+    let is_kanji = |letter: &char| ('\u{4e00}'..='\u{9fff}').contains(letter);
+    let is_word = letters.windows(2).any(|pair| pair.iter().all(is_kanji))
+        || letters.iter().any(|letter| ('\u{3041}'..='\u{30ff}').contains(letter));
+    is_word.then(|| text.into_owned())
 }
 
 /// Lines that end in LF, CRLF or CR.
@@ -226,6 +250,10 @@ mod tests {
         let wide: Vec<u8> =
             "\u{feff}t,y\n0,1.5\n1,1.6\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
         assert_eq!(read("a.csv", "a", &wide).expect("a table").rows, plain);
+        assert_eq!(read("a.csv", "a", &wide[2..]).expect("a table").rows, plain);
+        let (bytes, ..) = SHIFT_JIS.encode("\u{6642}\u{9593},\u{9ad8}\u{3055}\n0,1.5\n");
+        let japanese = read("a.csv", "a", &bytes).expect("a table");
+        assert_eq!(japanese.rows[0].cells, ["\u{6642}\u{9593}", "\u{9ad8}\u{3055}"]);
         let latin = read("a.csv", "a", b"Slice n\xb0,Y \x96\n1,2\n").expect("a table");
         assert_eq!(latin.rows[0].cells, ["Slice n°", "Y –"]);
         assert_eq!(latin.notes.len(), 1);

@@ -193,3 +193,17 @@ fn an_option_that_a_column_contradicts_is_told_and_decimal_commas_of_columns_are
         set.notes
     );
 }
+
+#[test]
+fn conditions_without_names_part_where_gaps_of_speed_are_wide() {
+    // Speeds that are 5 % apart, and repeats within 1 %.
+    let heights = [0.2, 0.2, 0.2, 0.221, 0.221, 0.221, 0.244, 0.244, 0.244];
+    let file =
+        |(at, height): (usize, f64)| (format!("drop{at}.csv"), table(height, 1.0, at as u64));
+    let tables: Vec<(String, String)> = heights.into_iter().enumerate().map(file).collect();
+    let set = of_folder(&tables, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let found = conditions(&set);
+    let each: Vec<&str> = found.iter().step_by(3).copied().collect();
+    assert!(found.iter().enumerate().all(|(at, one)| *one == each[at / 3]), "{found:?}");
+    assert!(each[0] != each[1] && each[1] != each[2], "{found:?}");
+}

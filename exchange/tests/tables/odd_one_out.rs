@@ -117,3 +117,29 @@ fn bodies_of_several_sizes_have_one_surface_if_their_centres_were_tracked() {
     assert_eq!(level(&found), level(&with(&[("tracked", "centre")])));
     assert!(level(&with(&[("tracked", "lowest")])).contains("a level for each run"));
 }
+
+#[test]
+fn heights_that_all_names_state_judge_the_scale() {
+    // Speeds are a fifth too large, and heights of fall go with their squares.
+    let set = imported(|_, table| table.scale = 1.2);
+    let told =
+        warned(&set, "by their names the bodies fall from 5, 10, 20, 40").expect("a warning");
+    assert!(told.contains("Lengths 0.8") && told.contains(" m. Are the scale"), "{told}");
+}
+
+#[test]
+fn a_fall_that_no_guide_explains_is_refused_whatever_single_runs_say() {
+    let error =
+        of_folder(&tables(|_, table| table.scale = 10.0), &[]).expect_err("ten times as long");
+    assert!(error.contains("by its units the fall before contact accelerates at 9"), "{error}");
+}
+
+#[test]
+fn a_mass_in_a_name_is_held_against_the_stated_one() {
+    let all: Vec<(String, String)> = tables(|_, _| {})
+        .into_iter()
+        .map(|(name, text)| (name.replace("h40", "33g_h40"), text))
+        .collect();
+    let set = of_folder(&all, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert!(warned(&set, "has 33g in its name").is_some_and(|told| told.contains("--bodies")));
+}

@@ -14,6 +14,9 @@ const MOST: usize = 64;
 /// Fewest frames that an acceleration is read from.
 const FEWEST: usize = 6;
 
+/// Fewest frames of a fall that tell the error of a reading by themselves.
+const STEADILY: usize = 10;
+
 /// Share of the neighbouring steps that may be longer or shorter than the median for a frame to count in the noise.
 const STEADY: f64 = 0.1;
 
@@ -40,6 +43,11 @@ impl Fall {
         // The window goes on to where the path is slow again: what comes before its fastest part is the fall.
         let fast = velocity_window(window, noise, 0.95)
             .map_or(0, |fast| window.iter().position(|frame| frame.t >= fast[0].t).unwrap_or(0));
+        // A tracker may hold a body that rests more steadily than one that falls.
+        let noise = match fast >= STEADILY {
+            true => noise.max(reading_noise(&window[..fast])),
+            false => noise,
+        };
         let acceleration = match window[..fast].len() >= FEWEST {
             true => acceleration(&window[..fast], noise),
             false => acceleration(&window[..window.len().min(fast + 2)], noise),
