@@ -5,10 +5,8 @@ use std::collections::BTreeMap;
 
 use measurements::MeasurementSet;
 
-use crate::fit::Fit;
 use crate::fit::fitted_parameters::parameters;
 use crate::fit::problem::{FitError, FitProblem, Fitted, MOST_BETWEEN};
-use crate::forward::ParameterKind;
 use crate::misfit::force_error::ForceErrors;
 use crate::misfit::held_out::HeldOut;
 use crate::misfit::lack_of_fit::lack_of_fit;
@@ -16,7 +14,8 @@ use crate::missing_force::{AnyForce, any_force, is_a_force_left};
 use crate::noise::Noise;
 use crate::ranking::pair::{Pair, best_pair};
 use crate::ranking::score::Ranking;
-use crate::verdict::added_force::{AddedForce, added_forces};
+use crate::verdict::added_force::AddedForce;
+use crate::verdict::amplitudes::{amplitudes, as_listed, correlation};
 use crate::verdict::doubts::{doubts, evidence, no_repeats};
 use crate::verdict::frequency::of_benchmark;
 use crate::verdict::ranked::ranked;
@@ -46,10 +45,6 @@ const MORE_THAN_SESSIONS: f64 = 7.0;
 
 /// Log odds (20 to 1) from which a force of any form is missing beside effects with which conditions still differ.
 const BESIDE: f64 = 3.0;
-
-/// Fall of χ² from which the data ask for another form than the listed one: once in a hundred by chance, where its five numbers
-/// are free.
-const FORM: f64 = 15.1;
 
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
 const DOUBTFUL: f64 = 0.1;
@@ -490,27 +485,6 @@ pub(crate) fn nothing(problem: &FitProblem<'_>, fitted: &Fitted) -> Verdict {
     }
 }
 
-/// The amplitudes of the effects of `fit`, with the forces that they are.
-fn amplitudes(problem: &FitProblem<'_>, fit: &Fit) -> Vec<Amplitude> {
-    let forces = added_forces(problem, fit);
-    let effects = fit.point.effects.iter().enumerate().zip(forces);
-    let one = |((at, &(index, q)), force): ((usize, &(usize, f64)), Option<AddedForce>)| {
-        let se = fit.standard_error(fit.point.parameters.len() + at);
-        let candidate = &problem.forward.candidates()[index];
-        Amplitude {
-            id: candidate.id.clone(),
-            form: candidate.form.iter().copied().collect(),
-            q,
-            se,
-            at_bound: candidate.bound_at(q),
-            interval_95: candidate.interval_95(q, se),
-            unusual: candidate.is_unusual(q, se),
-            force,
-        }
-    };
-    effects.map(one).collect()
-}
-
 /// What was left aside of the measurements, and what is unusual of what is named.
 fn warnings(problem: &FitProblem<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> Vec<String> {
     let between = proposed.noise.sessions;
@@ -549,34 +523,6 @@ pub(crate) fn unexplained(
 /// Whether a model leaves no lack of fit; one that leaves nothing to judge by is not adequate.
 pub(crate) fn adequate(p_lof: Option<f64>) -> bool {
     p_lof.is_some_and(|p| p > ALPHA)
-}
-
-/// Of the amplitudes of a pair.
-fn correlation(fit: &Fit) -> Option<f64> {
-    let first = fit.point.parameters.len();
-    if fit.point.effects.len() != 2 {
-        return None;
-    }
-    let (a, b) = (fit.standard_error(first)?, fit.standard_error(first + 1)?);
-    Some(fit.covariance[(first, first + 1)] / (a * b)).filter(|c| c.is_finite())
-}
-
-/// `proposed` with effects of exactly the form that is listed, as a model has them, if the data ask for no other one; else as
-/// it is. Beside a form that nothing fixes, an amplitude is one of many that give the same force where there are data.
-fn as_listed(problem: &FitProblem<'_>, proposed: &Fitted) -> Result<Fit, FitError> {
-    if proposed.fit.point.effects.is_empty() {
-        return Ok(proposed.fit.clone());
-    }
-    let parameters = problem.forward.parameters();
-    let mut start = proposed.fit.point.clone();
-    let of_forms = start.parameters.iter_mut().zip(parameters);
-    let forms = of_forms.filter(|(_, one)| one.kind == ParameterKind::Form);
-    if forms.map(|(value, one)| *value = one.start).count() == 0 {
-        return Ok(proposed.fit.clone());
-    }
-    let listed = problem.data(&proposed.weights).fit_as_listed(&start)?;
-    let is_asked_for = listed.chi2 - proposed.fit.chi2 > FORM;
-    Ok(if is_asked_for { proposed.fit.clone() } else { listed })
 }
 
 pub(crate) fn cannot_tell(problem: &FitProblem<'_>, why: String) -> Diagnosis {

@@ -1,6 +1,7 @@
 //! What a diagnosis says, and how it is written.
 
 pub mod added_force;
+pub(crate) mod amplitudes;
 pub(crate) mod doubts;
 pub(crate) mod frequency;
 pub(crate) mod judge;
