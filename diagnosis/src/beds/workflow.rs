@@ -184,9 +184,13 @@ impl Work<'_> {
     ) -> Result<BedDiagnosis, BedError> {
         let Self { bed_model, observed, plan, impacts, preparation, .. } = self;
         diagnosis.preparation = listed(&preparation, diagnosis.preparation);
+        let baseline = diagnosis.baseline.as_ref();
+        let is_strained = baseline.is_some_and(|one| forward.is_strained(&one.fit));
         if diagnosis.verdict.is_explained() && diagnosis.preparation.iter().any(|one| one.named) {
             diagnosis.verdict = Verdict::ExplainedByPreparation;
-        } else if diagnosis.verdict == Verdict::ExplainedByPreparation {
+        } else if diagnosis.verdict == Verdict::ExplainedByPreparation
+            || (diagnosis.verdict == Verdict::NothingDetected && is_strained)
+        {
             // Only a bed that the set rules out would explain what no effect is large enough for.
             diagnosis.verdict = Verdict::BelowNoise;
         }

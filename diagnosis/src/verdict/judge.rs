@@ -46,6 +46,9 @@ const MORE_THAN_SESSIONS: f64 = 7.0;
 /// Log odds (20 to 1) from which a force of any form is missing beside effects with which conditions still differ.
 const BESIDE: f64 = 3.0;
 
+/// Share of the fall of χ² by the best effect that all others stay below where it stands out: in another form, it leaves a force too.
+const STANDS_OUT: f64 = 0.5;
+
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
 const DOUBTFUL: f64 = 0.1;
 
@@ -162,12 +165,13 @@ impl Judge<'_> {
         let is_most = is_judged && self.alike.len() == 1 && held_out.takes_most();
         let is_named = is_explained || is_most;
         let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
-        let leaves_a_force = is_named && !is_one_of_many && self.leaves_a_force(&self.leader)?;
+        let is_left = is_named && !is_one_of_many && self.leaves_a_force(&self.leader)?;
+        let leaves_a_force = is_left && !self.stands_out();
         if is_named && !is_one_of_many && !leaves_a_force {
             let leaves_more =
                 held_out.leaves_more_than_noise() == Some(true) && held_out.leaves_a_part();
             let found = self.one(grounds, held_out)?;
-            let is_of_another_form = !adequate(p_leader) || leaves_more;
+            let is_of_another_form = !adequate(p_leader) || leaves_more || is_left;
             return Ok(match is_of_another_form && !found.effects.is_empty() {
                 true => of_another_form(found),
                 false => found,
@@ -247,6 +251,13 @@ impl Judge<'_> {
             () => NOT_ANY,
         };
         self.is_no_likelier(&self.leader, least)
+    }
+
+    /// Whether no other effect explains as much as a good part of what the best one does: a force that is not listed is about
+    /// equally far from several of them.
+    fn stands_out(&self) -> bool {
+        let falls = |at: usize| self.ranking.scores.get(at).map_or(0.0, |score| score.delta);
+        falls(1) < STANDS_OUT * falls(0)
     }
 
     /// Whether conditions differ with the effects of `fitted` by more than their repeats show, and not as beds do that are poured

@@ -4,11 +4,14 @@ use diagnosis::diagnose::diagnose;
 use diagnosis::fit::problem::{DEFAULT_SEED, FitProblem};
 use diagnosis::misfit::held_out::LeftOut;
 use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 use measurements::{Kind, MeasurementSet, StatedError};
 
+use validation::benchmark::trial::baseline;
+
 use crate::laboratory::Laboratory;
-use crate::world::{Effect, TwoTerm};
+use crate::world::{Effect, Setting, TwoTerm};
 
 fn diagnosis(laboratory: &Laboratory, set: &MeasurementSet) -> Diagnosis {
     diagnosis_among(laboratory, set, &Effect::LISTED)
@@ -89,6 +92,30 @@ fn an_effect_outside_the_list_is_refused() {
     assert_eq!(found.verdict, Verdict::NoneOfTheCandidates);
     assert!(found.effects.is_empty() && found.not_separable.is_empty());
     assert!(found.unexplained.depends_on.contains(&"z"), "{:?}", found.unexplained);
+}
+
+#[test]
+fn the_nearest_effect_is_refused_where_conditions_still_differ_by_a_force() {
+    let setting = |speed| Setting { speed, angle: 90.0, mass: 0.0667, diameter: 0.0254 };
+    let laboratory = Laboratory {
+        settings: [0.8, 1.2, 1.6, 2.2, 2.8, 3.6].map(setting).into(),
+        holdout: 0,
+        repeats: 4,
+        tau_coefficient: 0.02,
+        tau_path: 0.0,
+        ..Laboratory::hiding(Effect::Saturation, 2.2)
+    };
+    let mut set = laboratory.measure(3);
+    set.instrument.session_sigma_rel = None;
+    let model = baseline().expect("the shipped model loads");
+    let observed = Observed::of(&set);
+    let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
+    let problem = FitProblem { set: &set, observed: &observed, forward: &forward };
+    let found = diagnose(&problem, DEFAULT_SEED).expect("spheres stop");
+    // Viscous drag explains most of it, and leaves a force that depends on speed.
+    assert_eq!(found.ranking[0].id, "viscous-drag");
+    assert_eq!(found.verdict, Verdict::NoneOfTheCandidates, "{:?}", found.strength_reasons);
+    assert!(found.unexplained.hint.contains("conditions still differ"), "{:?}", found.unexplained);
 }
 
 #[test]

@@ -41,6 +41,8 @@ pub(crate) enum Effect {
     MoreMass,
     /// In no list: friction that is higher around one depth.
     Layer,
+    /// In no list: drag that saturates at a speed (m/s).
+    Saturation,
 }
 
 impl Effect {
@@ -64,6 +66,7 @@ impl Effect {
             Self::LessWeight => "less-weight",
             Self::MoreMass => "more-mass",
             Self::Layer => "layer",
+            Self::Saturation => "saturation",
         }
     }
 }
@@ -117,7 +120,11 @@ impl Impact<'_> {
             let scaled = libm::pow(depth / diameter, 1.0 + has(Effect::DepthExponent)) * diameter;
             let drag = self.coefficients[0] * (1.0 + has(Effect::DepthDrag) * depth / diameter);
             let layer = has(Effect::Layer) * libm::exp(-((depth - 0.012) / 0.004).powi(2));
-            resistance = drag * DENSITY * area * v * v
+            let saturates = match has(Effect::Saturation) {
+                speed if speed > 0.0 => 1.0 / (1.0 + (v / speed).powi(2)),
+                _ => 1.0,
+            };
+            resistance = saturates * drag * DENSITY * area * v * v
                 + self.coefficients[1] * load * scaled * (1.0 + layer)
                 + has(Effect::Viscous) * DENSITY * area * (GRAVITY * diameter).sqrt() * v
                 + has(Effect::Yield) * load * diameter;
