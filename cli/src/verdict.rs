@@ -164,7 +164,7 @@ fn apparatus(verdict: Verdict, object: &Value) -> String {
     };
     let apparatus = match verdict {
         Verdict::NoneOfTheCandidates | Verdict::BelowNoise => {
-            "Apparatus, as a model has it that misses the data"
+            "Apparatus, in a model that does not explain the data"
         }
         _ => "Apparatus",
     };

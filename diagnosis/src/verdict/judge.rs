@@ -415,8 +415,8 @@ impl Judge<'_> {
             None => HeldOut::of(problem, before, proposed)?,
         };
         // A fit that misses the data says nothing of the apparatus.
-        let explains =
-            adequate(if proposed.fit.point.effects.is_empty() { p_lof } else { p_lof_with });
+        let p_of_proposed = if proposed.fit.point.effects.is_empty() { p_lof } else { p_lof_with };
+        let explains = verdict.is_explained() || adequate(p_of_proposed);
         let found = |mut errors: Vec<ApparatusError>| {
             errors.iter_mut().for_each(|error| error.named &= explains);
             errors

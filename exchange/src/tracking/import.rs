@@ -124,7 +124,7 @@ fn of_the_point(tracked: Option<Tracked>) -> String {
         Some(point) => {
             let point = if point == Tracked::Centre { "centre" } else { "lowest point" };
             format!(
-                "Bodies differ in size, and their contacts are at one level if their {point} was tracked, as is assumed here. \
+                "Bodies differ in size. Their contacts lie at one level if the {point} was tracked, which is assumed. \
                  --tracked lowest or --tracked centre says it."
             )
         }

@@ -110,7 +110,7 @@ fn note_stray(track: &mut Track, samples: &[Sample], stray: &[bool]) {
     match lines.len() {
         0 => {}
         1 => track.notes.push(format!(
-            "the reading on line {listed} is not of the body: the contact is sought without it"
+            "the reading on line {listed} is not of the body; it is left out when the contact is sought"
         )),
         n => track.notes.push(format!(
             "{n} readings are not of the body (lines {listed}): the contact is sought without them"
@@ -215,9 +215,12 @@ fn in_order(
     let (mut samples, copies) = in_turn(track, counts_rows)?;
     let repeated = without_repeated(&mut samples);
     if repeated > 0 {
-        let (frames, are) = if repeated == 1 { ("frame", "is") } else { ("frames", "are") };
+        let (frames, repeat, are) = match repeated {
+            1 => ("frame", "repeats", "is"),
+            _ => ("frames", "repeat", "are"),
+        };
         track.notes.push(format!(
-            "{repeated} {frames} with the body where it was, though it moves before and behind, {are} left out"
+            "{repeated} {frames} that {repeat} the position before, while the body moves, {are} left out"
         ));
     }
     if copies > 0 {

@@ -270,7 +270,7 @@ impl Path {
             "by its units the fall before contact accelerates at {:.4} m/s^2, not at {gravity}",
             ratio * gravity
         );
-        let right = format!("{guess}A slower fall that is meant: --trust-units");
+        let right = format!("{guess}If another fall than that of gravity is meant: --trust-units");
         Fault::new(&self.track.file, what, right)
     }
 }
