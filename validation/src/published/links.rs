@@ -115,7 +115,6 @@ mod tests {
 
     #[test]
     fn the_chain_is_that_of_the_document() {
-        // The first line of docs/validation.md, as it is rounded there.
         let course = chain(ANGLES[0], SPEEDS[0]).expect("an impact");
         assert!((course.links[0].depth - 0.0424).abs() < 5e-5, "{course:?}");
         assert!((course.links[1].time - 0.0409).abs() < 5e-5, "{course:?}");
