@@ -46,7 +46,7 @@ const MORE_THAN_SESSIONS: f64 = 7.0;
 /// Log odds (20 to 1) from which a force of any form is missing beside effects with which conditions still differ.
 const BESIDE: f64 = 3.0;
 
-/// Share of the fall of χ² by the best effect that all others stay below where it stands out: in another form, it leaves a force too.
+/// The best effect stands out if every other one lowers χ² by less than this share of its fall.
 const STANDS_OUT: f64 = 0.5;
 
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
@@ -253,8 +253,8 @@ impl Judge<'_> {
         self.is_no_likelier(&self.leader, least)
     }
 
-    /// Whether no other effect explains as much as a good part of what the best one does: a force that is not listed is about
-    /// equally far from several of them.
+    /// Whether no other effect explains half of what the best one does. A force that is not listed is about equally far from
+    /// several effects; one that is, in another form, is near one of them and leaves a force too.
     fn stands_out(&self) -> bool {
         let falls = |at: usize| self.ranking.scores.get(at).map_or(0.0, |score| score.delta);
         falls(1) < STANDS_OUT * falls(0)
