@@ -144,12 +144,6 @@ fn has_formula(diagnosis: &Diagnosis) -> bool {
     diagnosis.missing_force.as_ref().is_some_and(|force| force.formula.is_some())
 }
 
-/// Whether `effect` is fitted with an amplitude that changes nothing.
-fn is_nil(diagnosis: &Diagnosis, effect: &str) -> bool {
-    let fitted = diagnosis.ranking.iter().find(|one| one.id == effect);
-    fitted.and_then(|one| one.q).is_some_and(|q| q.abs() < f64::MIN_POSITIVE)
-}
-
 /// A model for each effect worth adding: names and texts of files.
 fn propose(
     model: &Candidate,
@@ -161,8 +155,7 @@ fn propose(
             vec![diagnosis.effects.iter().map(String::as_str).collect()]
         }
         Verdict::NotSeparable => {
-            let ids = diagnosis.not_separable.iter().map(String::as_str);
-            ids.filter(|id| !is_nil(diagnosis, id)).map(|id| vec![id]).collect()
+            diagnosis.not_separable.iter().map(|id| vec![id.as_str()]).collect()
         }
         _ => Vec::new(),
     };

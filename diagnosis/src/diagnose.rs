@@ -43,7 +43,15 @@ pub(crate) fn verdict(problem: &FitProblem<'_>, seed: u64) -> Result<Diagnosis, 
         }
         Err(other) => return Err(other),
     };
-    match ranked_by(problem, &baseline, seed)? {
+    let judge = match ranked_by(problem, &baseline, seed)? {
+        Some(judge) if judge.leader_is_nil() => {
+            // An effect of no amplitude improves nothing: its search has found the better fit of the model as it is.
+            let better = problem.fit(&judge.leader.fit.without_effects().point)?;
+            ranked_by(problem, &better, seed)?
+        }
+        other => other,
+    };
+    match judge {
         Some(judge) => judge.verdict(),
         None => Ok(cannot_tell(problem, "no effect can be tested with these data".to_owned())),
     }

@@ -58,6 +58,11 @@ impl Score {
     pub(crate) fn amplitude(&self) -> f64 {
         self.point.effects.last().map_or(0.0, |(_, q)| *q)
     }
+
+    /// Whether it changes nothing.
+    pub(crate) fn is_nil(&self) -> bool {
+        self.amplitude().abs() < f64::MIN_POSITIVE
+    }
 }
 
 /// All effects that could be added, best first.
@@ -195,7 +200,7 @@ impl Ranking {
                     && candidate.bound_at(other.amplitude()).is_none()
                     && best.signature.unit.dot(&other.signature.unit).abs() >= SAME
             };
-            other.delta > 0.0 && (best.delta - other.delta < within || is_same())
+            other.delta > 0.0 && !other.is_nil() && (best.delta - other.delta < within || is_same())
         };
         let others = (1..self.scores.len()).filter(|&place| confused(&self.scores[place]));
         std::iter::once(0).chain(others).collect()

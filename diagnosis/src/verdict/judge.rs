@@ -13,7 +13,7 @@ use crate::misfit::lack_of_fit::lack_of_fit;
 use crate::missing_force::{AnyForce, any_force, is_a_force_left};
 use crate::noise::Noise;
 use crate::ranking::pair::{Pair, best_pair};
-use crate::ranking::score::Ranking;
+use crate::ranking::score::{Ranking, Score};
 use crate::verdict::added_force::AddedForce;
 use crate::verdict::amplitudes::{amplitudes, as_listed, correlation};
 use crate::verdict::doubts::{doubts, evidence, no_repeats};
@@ -251,6 +251,11 @@ impl Judge<'_> {
             () => NOT_ANY,
         };
         self.is_no_likelier(&self.leader, least)
+    }
+
+    /// Whether the best effect has an amplitude that changes nothing.
+    pub(crate) fn leader_is_nil(&self) -> bool {
+        self.ranking.scores.first().is_some_and(Score::is_nil)
     }
 
     /// Whether no other effect explains half of what the best one does. A force that is not listed is about equally far from

@@ -6,6 +6,7 @@ use engine::units::{Dimension, dimension_of, parse};
 use intruders::TipForm;
 
 use super::called;
+use super::called::words;
 use super::density;
 use super::fault::Fault;
 use super::heading::Heading;
@@ -323,8 +324,7 @@ pub(super) fn set_aside(
 pub(super) fn of_named_mass(run: &str, body: &Body) -> Option<String> {
     /// Largest relative difference of a rounded mass.
     const ROUNDED: f64 = 0.1;
-    let words = run.split(|c: char| !c.is_alphanumeric() && c != '.');
-    let mut stated = words.filter(|word| {
+    let mut stated = words(run).filter(|word| {
         let unit = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
         unit.len() < word.len() && ["g", "kg", "mg"].contains(&unit)
     });

@@ -1,5 +1,10 @@
 //! What the names of runs say where no pattern takes them apart: which part numbers the repeats, and which tells conditions.
 
+/// The words of `name`: letters, digits and decimal points.
+pub(super) fn words(name: &str) -> impl Iterator<Item = &str> {
+    name.split(|c: char| !c.is_alphanumeric() && c != '.')
+}
+
 /// A run of letters or of digits in a name.
 #[derive(Clone, Copy, Debug)]
 struct Token<'a> {

@@ -1,8 +1,10 @@
 //! Tables that disagree with the others: their acceleration before contact, their axis, the height in their name.
 
+use engine::units::{Dimension, parse};
 use measurements::{Reading, deviation_of, median};
 
 use super::begun::Begun;
+use super::called::words;
 use super::fault::Fault;
 use super::motion::Path;
 use super::run::Run;
@@ -103,9 +105,10 @@ const FEWEST: (usize, usize) = (5, 3);
 const SAME: f64 = 0.15;
 const OTHER: f64 = 0.3;
 
-/// What a height in a name may be counted in (m), and the relative difference up to which it is that; and with the unit in the
-/// names.
+/// Units (m) in which names without one may count heights.
 const UNITS: [f64; 4] = [1.0, 1e-2, 1e-3, 0.0254];
+
+/// Largest relative difference between heights in names and those of the speeds: without a unit in the names, and with one.
 const NEAR: (f64, f64) = (0.2, 0.1);
 
 /// A warning if names of `runs` state heights, as `h050` and `h10cm` do, and speeds contradict them, some or all.
@@ -145,7 +148,8 @@ pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
     ))
 }
 
-/// A warning if speeds are those of the `heights` in names only in a `unit` (m) that is none, or not the one `stated`.
+/// A warning about the unit (m) in which all `heights` in names agree with the speeds, unless it is the `stated` one, or, if none
+/// is stated, a usual unit of length.
 fn off_all_names(heights: &[f64], unit: f64, stated: Option<f64>) -> Option<String> {
     let off = |known: f64| (unit / known - 1.0).abs();
     let known = stated.or_else(|| UNITS.into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b))))?;
@@ -176,16 +180,12 @@ fn off_all_names(heights: &[f64], unit: f64, stated: Option<f64>) -> Option<Stri
 
 /// The number in a word of `name` that consists of `h` and digits, and its unit (m), if one stands behind.
 fn height_in(name: &str) -> Option<(f64, Option<f64>)> {
-    let words = name.split(|c: char| !c.is_alphanumeric() && c != '.');
-    let mut heights = words.filter_map(|word| {
+    let mut heights = words(name).filter_map(|word| {
         let rest = word.strip_prefix(['h', 'H'])?;
         let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
         let unit = match &rest[end..] {
-            "m" => Some(1.0),
-            "cm" => Some(1e-2),
-            "mm" => Some(1e-3),
-            "in" => Some(0.0254),
-            _ => None,
+            "" => None,
+            unit => parse(&format!("1 {unit}"), Dimension::LENGTH).ok(),
         };
         let height = rest[..end].parse::<f64>().ok().filter(|height| *height > 0.0)?;
         Some((height, unit))

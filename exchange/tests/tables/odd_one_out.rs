@@ -111,7 +111,7 @@ fn bodies_of_several_sizes_have_one_surface_if_their_centres_were_tracked() {
         of_folder(&files, &all).unwrap_or_else(|error| panic!("{error}"))
     };
     let found = with(&[]);
-    assert!(warned(&found, "if their centre was tracked, as is assumed").is_some());
+    assert!(warned(&found, "if the centre was tracked, which is assumed").is_some());
     let level = |set: &Set| warned(set, "Surface:").expect("a level");
     assert!(level(&found).contains("one level for all runs"));
     assert_eq!(level(&found), level(&with(&[("tracked", "centre")])));

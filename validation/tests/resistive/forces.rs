@@ -170,6 +170,19 @@ fn a_hidden_power_of_depth_is_named_by_forces() {
 }
 
 #[test]
+fn depths_that_count_from_3_mm_too_high_are_told_as_such_and_name_no_effect() {
+    for (off, seed) in [(0.003, 11), (-0.003, 12), (0.005, 13)] {
+        let mut set = measured(None, seed);
+        set.instrument = Instrument { force_sigma: Some(READING), ..Instrument::default() };
+        set.runs.iter_mut().flat_map(|run| &mut run.samples).for_each(|one| one.at += off);
+        let found = diagnosed(&set);
+        assert!(found.effects.is_empty() && found.not_separable.is_empty(), "{off}: {found:?}");
+        let zero = found.apparatus.iter().find(|error| error.id == "depth-zero").expect("a zero");
+        assert!((zero.value.abs() - off.abs()).abs() < 5e-4, "{off}: {zero:?}");
+    }
+}
+
+#[test]
 fn forces_of_the_model_itself_show_nothing() {
     let named = (0..6)
         .filter(|seed| {
