@@ -116,10 +116,10 @@ fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
     }
 }
 
-fn before(set: &MeasurementSet, observed: &Observed) -> ResistiveForward {
-    let shipped = find_shipped("two-term-vector").expect("a shipped model");
+fn before(set: &MeasurementSet, observed: &Observed, name: &str) -> ResistiveForward {
+    let shipped = find_shipped(name).expect("a shipped model");
     let source = ModelSource::Text {
-        name: "two-term-vector.toml".to_owned(),
+        name: format!("{name}.toml"),
         text: shipped.text.to_owned(),
         folder: ".".into(),
     };
@@ -128,8 +128,12 @@ fn before(set: &MeasurementSet, observed: &Observed) -> ResistiveForward {
 }
 
 fn diagnosed(set: &MeasurementSet) -> Diagnosis {
+    diagnosed_by("two-term-vector", set)
+}
+
+fn diagnosed_by(model: &str, set: &MeasurementSet) -> Diagnosis {
     let observed = Observed::of(set);
-    let forward = before(set, &observed);
+    let forward = before(set, &observed, model);
     diagnose(&FitProblem { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
         .expect("forces are finite")
 }
@@ -175,7 +179,7 @@ fn depths_that_count_from_3_mm_too_high_are_told_as_such_and_name_no_effect() {
         let mut set = measured(None, seed);
         set.instrument = Instrument { force_sigma: Some(READING), ..Instrument::default() };
         set.runs.iter_mut().flat_map(|run| &mut run.samples).for_each(|one| one.at += off);
-        let found = diagnosed(&set);
+        let found = diagnosed_by("bekker", &set);
         assert!(found.effects.is_empty() && found.not_separable.is_empty(), "{off}: {found:?}");
         let zero = found.apparatus.iter().find(|error| error.id == "depth-zero").expect("a zero");
         assert!((zero.value.abs() - off.abs()).abs() < 5e-4, "{off}: {zero:?}");
@@ -199,7 +203,7 @@ fn forces_of_the_model_itself_show_nothing() {
 fn what_a_slow_push_cannot_show_is_not_tested() {
     let set = measured(None, 1);
     let observed = Observed::of(&set);
-    let forward = before(&set, &observed);
+    let forward = before(&set, &observed, "two-term-vector");
     // Of 20 mm/s the drag is a hundred-thousandth of the force.
     assert_eq!(forward.idle(), ["resistance.drag"]);
     let candidates = forward.candidates();
